@@ -92,6 +92,8 @@ void order_torn(HostSide& side, unsigned count, kernel::Duration between) {
 void serve_late(HostSide& side, std::uint8_t id, const valve_bus::Response& response) {
   side.drain();
   HostBench& bench = side.bench();
+  // At a slow rate the line is not silent for about a time-out then, and a refresh may be due.
+  if (side.pace().has_written() && bench.characters(10) >= bench.time_out()) return;
   side.order(bench.read_of(id));
   for (unsigned attempt = 0; attempt < bench.rules().read_attempts; ++attempt) {
     if (!side.await_request()) return;

@@ -101,14 +101,18 @@ void HostPace::on_power() {
   refreshes_ = 0;
 }
 
-void HostPace::expect_refreshed() {
-  if (judge_ == nullptr || bench_.rules().answers_writes) return;
+kernel::Duration HostPace::longest_refresh() const {
   const valve_bus::Rules& rules = bench_.rules();
   const kernel::Duration read = rules.read_attempts * (bench_.time_out() * 11 / 10 + bench_.characters(10));
   const kernel::Duration write = bench_.characters(10) + bench_.delimiter() + rules.write_distance;
   // Each of the nodes may wait for the others and, with each, for what the PC has ordered.
   const auto nodes = static_cast<int>(written_at_.size());
-  const kernel::Duration longest = rules.refresh * 11 / 10 + nodes * (read + 2 * write);
+  return rules.refresh * 11 / 10 + nodes * (read + 2 * write);
+}
+
+void HostPace::expect_refreshed() {
+  if (judge_ == nullptr || bench_.rules().answers_writes) return;
+  const kernel::Duration longest = longest_refresh();
   for (const auto& [id, when] : written_at_) {
     judge_->expect(bench_.now() - when <= longest, "no_refresh", [&] {
       return Mismatch{{fmt::format("node {} is written to again within {}", id, kernel::describe(longest))},

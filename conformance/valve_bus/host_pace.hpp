@@ -32,6 +32,10 @@ class HostPace {
 
   bool has_written() const { return !written_at_.empty(); }
   kernel::Time last_start() const { return last_ ? last_->start : kernel::Time{}; }
+  kernel::Time last_end() const { return last_ ? last_->end : kernel::Time{}; }
+  // Until each node that was written to has been written to again, whatever the PC has ordered meanwhile.
+  kernel::Duration longest_refresh() const;
+  std::size_t written_nodes() const { return written_at_.size(); }
   // Each node that was written to has been written to again by now: `no_refresh`.
   void expect_refreshed();
 

@@ -19,6 +19,7 @@ using valve_bus::Command;
 using valve_bus::CommandFifo;
 using valve_bus::Host;
 using valve_bus::HostConfiguration;
+using valve_bus::HostCounters;
 using valve_bus::HostError;
 using valve_bus::HostErrorKind;
 using valve_bus::HostResponse;

@@ -8,10 +8,10 @@
 #include <optional>
 
 #include "conformance/valve_bus/host_cases.hpp"
+#include "conformance/valve_bus/host_deeds.hpp"
 #include "conformance/valve_bus/host_orders.hpp"
 #include "conformance/valve_bus/host_side.hpp"
 #include "conformance/valve_bus/host_vocabulary.hpp"
-#include "harness/iut/misbehaviour.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -44,6 +44,13 @@ std::string fifo_text(std::span<const std::int64_t> values) {
 }
 
 constexpr EventKind kFifoStates{"states of the FIFO", "fifo_wrong", "fifo_wrong", "fifo_wrong", fifo_text};
+
+std::string late_text(std::span<const std::int64_t> values) {
+  return fmt::format("{} late frames of {}", values[1], values[0]);
+}
+
+constexpr EventKind kLateCounts{"late frames", "counters_wrong", "counters_wrong", "counters_wrong",
+                                late_text};
 
 constexpr std::int64_t kSureDelimiterBits = 60;
 
@@ -123,6 +130,8 @@ class HostSequenceRun {
       case HostWord::stray:
         is_noisy_ = true;
         side.drain();
+        // It might come into an acknowledge.
+        if (rules.answers_writes && side.pace().has_written()) return;
         return side.say(fitted(command.octets, numbers[0]));
       case HostWord::wait:
         side.drain();
@@ -155,8 +164,41 @@ class HostSequenceRun {
         return talk_over(side, number(0), number(1));
       case HostWord::cycle:
         return read_in_turn(side, number(0), &side == sides_.data() ? &judge_ : nullptr);
-      default:
+      case HostWord::dip:
         if (can_turn_dip_) side.turn_dip(number(0));
+        return;
+      default:
+        return execute_lasting(side, command);
+    }
+  }
+
+  void execute_lasting(HostSide& side, const SequenceCommand& command) {
+    const auto& numbers = command.numbers;
+    const auto number = [&](std::size_t n) { return static_cast<unsigned>(numbers.at(n)); };
+    const auto id = static_cast<std::uint8_t>(numbers.empty() ? 0 : numbers.front());
+    CaseJudge* const judge = &side == sides_.data() ? &judge_ : nullptr;
+    switch (static_cast<HostWord>(command.word)) {
+      case HostWord::acknowledged:
+        return order_acknowledged(side, id, number(1), static_cast<Acknowledge>(numbers[2]));
+      case HostWord::polled:
+        return poll_without_end(side, id, number(1));
+      case HostWord::period:
+        return follow_refreshes(side, id, numbers[1] * kernel::kMillisecond, number(2), judge);
+      case HostWord::busy:
+        is_noisy_ = has_talked_ = true;
+        return talk_over_refreshes(side);
+      case HostWord::many:
+        return write_to_many(side, number(0));
+      case HostWord::cut:
+        return cut_part(side, number(0));
+      case HostWord::twice:
+        return write_twice(side, id, number(1));
+      case HostWord::rejected:
+        return reject_all(side, id, numbers[1] != 0, judge);
+      case HostWord::lates:
+        return say_late(side, id, number(1));
+      default:
+        return order_meanwhile(side, id, number(1), number(2));
     }
   }
 
@@ -206,6 +248,8 @@ class HostSequenceRun {
            compare_events(kIndications, iut.fifo_errors(), std::span(&twin.fifo_errors(), 1), is_settled,
                           judge_) &&
            compare_events(kFifoStates, iut.fifo_states(), std::span(&twin.fifo_states(), 1), is_settled,
+                          judge_) &&
+           compare_events(kLateCounts, iut.late_counts(), std::span(&twin.late_counts(), 1), is_settled,
                           judge_);
   }
 
@@ -269,8 +313,6 @@ const SequenceRole& host_sequence_role() {
 
 void run_host_sequence(const Sequence& sequence, HostBench& bench, CaseJudge& judge) {
   bench.expect_exact_instants();  // they are compared with those of the reference
-  if (bench.rules().answers_writes)
-    throw iut::CannotBeDone("sequences have no words for nodes that acknowledge writes");
   HostSequenceRun(bench, judge).run(sequence);
 }
 

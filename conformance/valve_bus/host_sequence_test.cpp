@@ -75,7 +75,7 @@ TEST(HostSequence, FindsWhatTakesManyCommandsOrAnInstant) {
 
 // Also with a host whose receiver stays on, or that reads after each write.
 TEST(HostSequence, TheReferenceIsNeverAccusedWithItsOptions) {
-  for (const char* option : {"receives_own_echo", "verifies_writes"}) {
+  for (const char* option : {"receives_own_echo", "verifies_writes", "answers_writes"}) {
     SequenceSearch one = host_search_of("ref", kernel::kIsSanitized ? 140 : 700);
     one.setup.pics.emplace().declare(option, true);
     const SequenceSearchResult result = search(one);
@@ -100,10 +100,16 @@ TEST(HostSequence, FindsEachHostForCheckWithAtMostFiveCommands) {
   EXPECT_EQ(found, kernel::kIsSanitized ? 2U : 6U);
 }
 
-TEST(HostSequence, AcknowledgedWritesDoNotApply) {
-  SequenceSearch one = host_search_of("ref", 10);
-  one.setup.pics.emplace().declare("answers_writes", true);
-  EXPECT_EQ(search(one).not_applicable, 10U);
+// Each of a period, a setting, an attempt, or what lasts longer than a single order.
+TEST(HostSequence, FindsWhatLastsAndWhatHappensDuringAnAttempt) {
+  for (const char* name :
+       {"refreshes_when_idle", "any_acknowledge_taken", "acknowledge_not_awaited", "refresh_counts_from_rest",
+        "new_write_refreshed_with_old", "milliseconds_of_16_bits", "busy_refresh_is_the_last",
+        "refreshes_64_nodes", "part_over_power_loss", "verified_against_newest", "no_rest_behind_wrong",
+        "late_behind_wrong", "first_late_counted", "late_counter_of_8_bits", "pc_restarts_time_out",
+        "repeats_from_the_ring"}) {
+    EXPECT_TRUE(search(host_search_of(std::string("mutant:") + name, 1'000)).found) << name;
+  }
 }
 
 }  // namespace

@@ -87,9 +87,9 @@ void HostSide::answer(const line::Levels& levels, kernel::Duration turnaround_ti
   take_indications();
 }
 
-void HostSide::answer(const valve_bus::Response& response, kernel::Duration turnaround_time) {
+void HostSide::answer_octets(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time) {
   pace_.on_answer();
-  const kernel::Time end = bench_.answer(response, turnaround_time);
+  const kernel::Time end = bench_.answer(octets, turnaround_time);
   wait(end - bench_.now());
 }
 
@@ -137,6 +137,54 @@ void HostSide::wait(kernel::Duration duration) {
   pace_.expect_refreshed();
 }
 
+// A refresh that is due is given up, and due again.
+void HostSide::keep_line_busy(kernel::Duration duration) {
+  unnoticed_from_ = bench_.now();
+  unnoticed_until_ = bench_.now() + 2 * valve_bus::character_notice(bench_.rules());
+  const kernel::Time end = bench_.now() + duration;
+  while (bench_.now() < end) {
+    bench_.say(std::array<std::uint8_t, 1>{0x55});
+    bench_.wait(bench_.characters(2));
+  }
+  pace_.on_noise();
+  wait(pace_.longest_refresh() + kernel::kMillisecond);
+}
+
+void HostSide::acknowledge_wrongly(const valve_bus::Command& command, unsigned attempts, Acknowledge how) {
+  wrongly_acknowledged_ = command;
+  wrong_acknowledges_ = attempts;
+  wrong_acknowledge_ = how;
+}
+
+void HostSide::acknowledge(const valve_bus::Command& command) {
+  constexpr std::int64_t kAcknowledgeBits = 60;
+  constexpr std::uint8_t kInverted = 0x10;
+  const bool is_wrong = wrong_acknowledges_ > 0 && command == wrongly_acknowledged_;
+  if (is_wrong) --wrong_acknowledges_;
+  const Acknowledge how = is_wrong ? wrong_acknowledge_ : Acknowledge::right;
+  if (how == Acknowledge::none) return;
+  const bool is_other = how == Acknowledge::other_data;
+  const auto data0 = static_cast<std::uint8_t>(command.data0 ^ (is_other ? kInverted : 0));
+  auto octets = octets_of(valve_bus::Response{data0, command.data1});
+  if (how == Acknowledge::wrong_check) octets.back() ^= kInverted;
+  const std::size_t count = how == Acknowledge::one_octet ? 1 : octets.size();
+  pace_.on_answer();
+  bench_.answer(std::span(octets).first(count), bench_.bits(kAcknowledgeBits));
+}
+
+bool HostSide::await_write(const valve_bus::Command& command, kernel::Duration within) {
+  const kernel::Time limit = bench_.now() + within;
+  while (const auto frame = bench_.next_frame(std::max(kernel::Duration{}, limit - bench_.now()))) {
+    note(*frame);
+    const bool is_it =
+        frame->sent.characters.size() == valve_bus::kCommandOctets && frame->command() == command;
+    if (is_it) return true;
+    if (is_flooded()) break;
+  }
+  take_indications();
+  return false;
+}
+
 void HostSide::restart() {
   take_indications();
   bench_.restart(dip_);
@@ -177,6 +225,8 @@ std::optional<valve_bus::Command> HostSide::note(const HostFrame& frame) {
     command = frame.command();
     const bool is_refresh = bench_.is_refresh(*command);
     pace_.on_frame(frame, is_refresh);
+    if (bench_.rules().answers_writes && command->command == bench_.rules().write_command)
+      acknowledge(*command);
     if (is_refresh) return std::nullopt;
     bench_.note_write(*command);
   }

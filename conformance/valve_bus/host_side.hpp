@@ -12,6 +12,9 @@
 // Writes that repeat what a node was last told are left out of the requests: a host refreshes when it likes.
 namespace fieldproof::conformance {
 
+// What a node says to a write of a host that waits for acknowledges.
+enum class Acknowledge : std::uint8_t { none, other_data, wrong_check, one_octet, right };
+
 class HostSide {
  public:
   // `judge`: of the form of its frames; null: it is not judged.
@@ -28,6 +31,8 @@ class HostSide {
   const Observations& fifo_errors() const { return fifo_errors_; }
   // Of the FIFO, where there is no doubt about them: overflow, octets that there is room for.
   const Observations& fifo_states() const { return fifo_states_; }
+  // Frames that it has counted as late, each time that some were said.
+  const Observations& late_counts() const { return late_counts_; }
   // Nodes for which something was ordered since power-up.
   const std::set<std::uint8_t>& ids() const { return ids_; }
   HostBench& bench() { return bench_; }
@@ -53,7 +58,10 @@ class HostSide {
   // `is_whole`: without faults, so everybody knows when it has ended.
   void answer(const line::Levels& levels, kernel::Duration turnaround_time, bool is_whole);
   // Character by character, as a node does.
-  void answer(const valve_bus::Response& response, kernel::Duration turnaround_time);
+  void answer(const valve_bus::Response& response, kernel::Duration turnaround_time) {
+    answer_octets(octets_of(response), turnaround_time);
+  }
+  void answer_octets(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time);
   // Until every order has ended; nothing is answered.
   void drain();
   // With nothing open: what the nodes say is a surprise.
@@ -61,6 +69,15 @@ class HostSide {
   // With nothing open: the line is not silent for so long, and the PC orders this soon.
   void talk(kernel::Duration duration, const valve_bus::Command& command);
   void wait(kernel::Duration duration);
+  // The first attempts of this write are acknowledged so; all other writes are acknowledged rightly, where
+  // the host waits for that.
+  void acknowledge_wrongly(const valve_bus::Command& command, unsigned attempts, Acknowledge how);
+  // To the end of this write; false when it does not come so soon.
+  bool await_write(const valve_bus::Command& command, kernel::Duration within);
+  // With nothing open: the line is not silent for so long, and nothing is ordered; then refreshes come.
+  void keep_line_busy(kernel::Duration duration);
+  void expect_refreshed() { pace_.expect_refreshed(); }
+  void note_late(std::uint8_t id, std::int64_t count) { late_counts_.push_back({{id, count}, bench_.now()}); }
   void turn_dip(unsigned position) { bench_.set_dip(dip_ = position); }
   void restart();
   void note_fifo();
@@ -73,6 +90,7 @@ class HostSide {
   void take_indications();
   // The host has sent this; nothing when it is a refresh.
   std::optional<valve_bus::Command> note(const HostFrame& frame);
+  void acknowledge(const valve_bus::Command& command);
 
   HostBench& bench_;
   CaseJudge* judge_;
@@ -80,6 +98,10 @@ class HostSide {
   Observations indications_;
   Observations fifo_errors_;
   Observations fifo_states_;
+  Observations late_counts_;
+  valve_bus::Command wrongly_acknowledged_;
+  unsigned wrong_acknowledges_ = 0;  // that are left
+  Acknowledge wrong_acknowledge_ = Acknowledge::right;
   HostPace pace_;
   unsigned dip_;
   unsigned number_ = 1;

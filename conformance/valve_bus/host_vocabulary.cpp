@@ -23,6 +23,13 @@ constexpr std::array<std::int64_t, 2> kTalks{1, 8};
 constexpr std::array<std::int64_t, 4> kTornWaits{1, 20, 50, 80};
 // On either side of what is too early for a response.
 constexpr std::array<std::int64_t, 4> kQuarters{3, 5, 7, 10};
+constexpr std::array<std::int64_t, 2> kPolled{20, 400};
+constexpr std::array<std::int64_t, 4> kBetween{0, 5, 20, 40};
+// The last ones take more than 65 s.
+constexpr std::array<std::int64_t, 4> kRefreshes{2, 3, 3, 1'400};
+constexpr std::array<std::int64_t, 3> kNodeCounts{2, 12, 80};
+constexpr std::array<std::int64_t, 4> kLates{1, 2, 3, 300};
+constexpr std::array<std::int64_t, 3> kMeanwhile{1, 2, 128};
 constexpr std::array<std::int64_t, 4> kWaits{1, 10, 60, 200};
 // Bits between a request and its answer: nobody doubts that it begins within the time-out, and the last of
 // its octets does so as well, whatever gaps are in it.
@@ -45,18 +52,16 @@ SequenceNumber fit() {
   return {"fit", 0, 2, 0};
 }
 
-// There are no words for nodes that acknowledge writes.
-constexpr std::array<std::string_view, 2> kFixedOfHost{"answers_writes", "dip"};
+// Turned by a word.
+constexpr std::array<std::string_view, 1> kFixedOfHost{"dip"};
 
 // What a host has been ordered, waits for or has lost.
 std::vector<std::vector<NamedCommand>> states_of_a_host() {
   const NamedCommand answered{"answer", {{"data0", 0xA5}, {"data1", 0x3C}}};
   const NamedCommand written{"write", {{"data0", 0x5A}, {"data1", 0xC3}}};
-  return {{answered, {"read"}, {"wait"}},
-          {{"unanswered"}, {"read"}, {"wait"}},
-          {{"part", {{"count", 2}}}},
-          {written, {"read"}, {"read", {{"id", 2}}}},
-          {written, {"wait"}, {"power"}}};
+  return {{answered, {"read"}, {"wait"}}, {{"unanswered"}, {"read"}, {"wait"}},
+          {{"part", {{"count", 2}}}},     {written, {"read"}, {"read", {{"id", 2}}}},
+          {written, {"wait"}, {"power"}}, {{"dip", {{"position", 7}}}, {"power"}}};
 }
 
 // Orders and answers, one by one.
@@ -152,10 +157,56 @@ std::vector<SequenceWord> long_words() {
        .weight = 1}};
 }
 
+// What lasts, and what happens during an attempt; everything ends before each of them.
+std::vector<SequenceWord> lasting_words() {
+  return {
+      {.word = "acknowledged",
+       .meaning =
+           "a write; where the host waits for acknowledges, its first attempts get: 0 nothing, 1 other "
+           "data, 2 a wrong check, 3 one octet",
+       .numbers = {node(), {"attempts", 0, 3, 1}, {"how", 0, 3, 0}},
+       .weight = 3},
+      {.word = "polled",
+       .meaning = "a write, and so many reads, one of which always waits; each is answered",
+       .numbers = {node(), {"count", 1, 400, 400, kPolled, true}}},
+      {.word = "period",
+       .meaning = "two writes to a node, the second so many milliseconds after the first, and so many "
+                  "refreshes",
+       .numbers = {node(), {"ms", 0, 40, 20, kBetween}, {"count", 1, 1'500, 3, kRefreshes, true}}},
+      {.word = "busy",
+       .meaning = "where something was written, the line is not silent when refreshes are due"},
+      {.word = "many",
+       .meaning = "a write to each of so many nodes, and their refreshes",
+       .numbers = {{"nodes", 1, 99, 2, kNodeCounts, true}}},
+      {.word = "cut",
+       .meaning = "the PC gives so many octets of a command, and the supply goes and comes",
+       .numbers = {{"count", 1, 3, 1}},
+       .is_loss = true},
+      {.word = "twice",
+       .meaning = "two writes to a node at once; where they are read back, the first (1), the second (2) or "
+                  "none (0) is other data",
+       .numbers = {node(), {"wrong", 0, 2, 0}},
+       .weight = 2},
+      {.word = "rejected",
+       .meaning = "a read each attempt of which is answered with a wrong check; then another read, or, 1, a "
+                  "frame that is late",
+       .numbers = {node(), {"late", 0, 1, 0}}},
+      {.word = "lates",
+       .meaning = "where nothing was written since power-up, a read that nobody answers, and so many frames "
+                  "after its end",
+       .numbers = {node(), {"count", 1, 300, 2, kLates, true}}},
+      {.word = "meanwhile",
+       .meaning = "a read that nobody answers; so many tenths of the time-out after its first attempt the PC "
+                  "orders so many writes",
+       .numbers = {node(), {"tenths", 1, 9, 5}, {"count", 1, 128, 1, kMeanwhile, true}}}};
+}
+
 std::vector<SequenceWord> host_words() {
   std::vector<SequenceWord> words = single_words();
-  std::vector<SequenceWord> more = long_words();
-  words.insert(words.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  for (auto* make : {long_words, lasting_words}) {
+    std::vector<SequenceWord> more = make();
+    words.insert(words.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  }
   return words;
 }
 

@@ -27,7 +27,17 @@ enum class HostWord : std::uint8_t {
   late,
   talk,
   cycle,
-  dip
+  dip,
+  acknowledged,
+  polled,
+  period,
+  busy,
+  many,
+  cut,
+  twice,
+  rejected,
+  lates,
+  meanwhile,
 };
 
 constexpr unsigned kHostAnswerOctets = 3;

@@ -183,13 +183,14 @@ class Host:
 
     def give_up(self, kind, now):
         request, self.request, self.is_awaiting = self.request, None, False
-        if request.command == WRITE:
+        if kind == LINE_BUSY and not request.is_of_pc:  # a refresh: without an error, and due again
+            self.written[request.id] = *self.written[request.id][:2], now
+        elif request.command == WRITE:
             self.report_error(request.id, kind if kind == LINE_BUSY else NOT_ACKNOWLEDGED, now)
-            self.end_write(request)
-            return
-        self.report_error(request.id, kind, now)
-        if not request.is_verifying:
-            self.report_response(request.id, True, now)
+        else:
+            self.report_error(request.id, kind, now)
+            if not request.is_verifying:
+                self.report_response(request.id, True, now)
 
     # ---- time ----
 
