@@ -295,6 +295,37 @@ TEST_F(Attachments, InterbusMasterInPythonPassesInTelegrams) {
   expect_passes("master=" + uri, "interbus/network/");
 }
 
+// What the page leaves to a master, or asks of it, each once accused or a fault of these.
+TEST_F(Attachments, InterbusMastersInPythonAreRightInWhatIsTheirChoice) {
+  const std::string python = installed("python3");
+  ASSERT_FALSE(python.empty()) << "there is no python3 on the PATH; script/setup test installs it";
+  const std::vector<std::pair<std::string, std::string>> sequences{
+      {R"("silence_limit": 1238572000001)", ""},
+      {R"("telegram_gap_millibits": 11201, "stop_after_bad_cycles": 1)",
+       R"({"do": "extra", "kind": 2, "telegram": 0})"},
+      {R"("end_telegrams": 897)", R"({"do": "outputs", "even": 0, "odd": 1}, {"do": "identify"})"},
+      {R"("forward_delay_half_bits": 389)", R"({"do": "ring", "change": 1, "station": 0})"},
+      {R"("stop_after_bad_cycles": 2)",
+       R"({"do": "lost", "count": 2, "level": 1}, {"do": "start", "disturbed": 2})"},
+      {R"("bit_rate": 100000000)", ""},
+      {"",
+       R"({"do": "power", "ring": 0, "expects": 0, "copies": 1, "cycle_ms": 0, "disturbed": 0, "limits": 0},
+              {"do": "ring", "change": 2, "station": 0}, {"do": "start", "disturbed": 0})"}};
+  for (const char* file : {"master.py", "master_telegrams.py"}) {
+    const std::string uri =
+        "exec:" + in_quotes(python) + " " + in_quotes(kSourceFolder / "examples/interbus_master" / file);
+    for (const auto& [settings, commands] : sequences) {
+      write("case.json", R"({"schema": "fieldproof/sequence/1", "role": "interbus/master", "seed": "1",
+             "implementations": [{"role": "master", "position": 0, "uri": "ref"}],
+             "settings": {)" +
+                             settings + R"(}, "commands": [)" + commands + "]}");
+      const Called called = prepared({"replay", "case.json", "--iut", uri}).run();
+      EXPECT_EQ(called.exit_code, 0) << file << settings << commands << called.out << called.err;
+      EXPECT_HOLDS(called.out, "pass ");
+    }
+  }
+}
+
 // Written from the pages of the roles; each of their faults that names a case is found by it.
 struct FaultyProgram {
   const char* name;  // of the test

@@ -28,6 +28,8 @@ class DrivenTelegrams final : public segment::Tap {
   kernel::Duration longest_silence() const { return longest_silence_; }
   void forget_silence() { longest_silence_ = {}; }
   kernel::Time first() const { return first_; }
+  // Of the last cycle that was driven, also before it has arrived.
+  kernel::Time cycle_start() const { return cycle_start_; }
 
  private:
   void add(kernel::Time start, const line::Telegram& telegram);

@@ -22,9 +22,20 @@ std::vector<VirtualStation> paper_ring() {
   return {{0x0008, 0, -1, false}, {0x01BE, 1, 0, true}, {0x01BD, 1, 1, false}};
 }
 
+namespace {
+
+// A master of telegrams drives each as a transmission of its own.
+kernel::Duration shortest_telegram_with(const field::Settings& settings) {
+  interbus::MasterConfiguration configuration;
+  field::take_settings(interbus::kMasterTable, settings, configuration);
+  return interbus::shortest_telegram(configuration.rules);
+}
+
+}  // namespace
+
 MasterBench::MasterBench(const NoNeeds&, const MasterSetting& setting)
     : CaseBench(setting.seed, setting.volume, setting.stresses,
-                LineWatch(interbus::shortest_telegram(interbus::Rules{}))),
+                LineWatch(shortest_telegram_with(setting.settings))),
       make_master_(setting.make_device),
       pics_(setting.pics.value_or(judge::Pics{})) {
   field::take_settings(interbus::kMasterTable, setting.settings, configuration_);
@@ -171,6 +182,11 @@ bool MasterBench::run_cycle() {
   id_cycles_in_a_row_ = finished_.is_data ? 0 : id_cycles_in_a_row_ + 1;
   if (finished_.is_data) ordered_id_cycles_ = 0;
   return id_cycles_in_a_row_ <= kMostIdCycles + 8 * ring_->stations().size() + ordered_id_cycles_;
+}
+
+void MasterBench::run_to_cycle(std::uint64_t number) {
+  const kernel::Time end = now() + 2 * longest_cycle();
+  while (ring_->cycle_count() <= number && segment().scheduler().next() <= end) segment().step();
 }
 
 void MasterBench::run_data_cycles(CaseJudge& judge, std::uint64_t count) {

@@ -90,6 +90,8 @@ class MasterBench final : public CaseBench {
   // Any cycle that the master finishes next. False when it finishes none any more, or ID cycles and nothing
   // else.
   bool run_cycle();
+  // Until the ring has seen so many cycles, counted from 0, and the next one begins.
+  void run_to_cycle(std::uint64_t number);
 
   // What the application and the line saw of one disturbed data cycle. Inputs are the words of the stations
   // that have any, in the order of the ring.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 
 #include "conformance/interbus/master_mutants.hpp"
@@ -79,6 +80,7 @@ class MasterSequenceRun {
       done += (done.empty() ? "" : "; ") +
               command_lines({.commands = {command}}, master_sequence_role().vocabulary).front();
       judge_.begin_step(done);
+      align(static_cast<MasterWord>(command.word));
       for (MasterSide& side : sides_) execute(side, command);
       compare();
     }
@@ -90,6 +92,18 @@ class MasterSequenceRun {
   void power(const MasterScene& scene) {
     for (MasterSide& side : sides_) side.power(scene);
     compare();
+  }
+
+  // When a cycle is judged is the master's choice, so an order at its end may come when the next one has
+  // begun. Then it comes to both in the next one.
+  void align(MasterWord word) {
+    const bool is_order = word == MasterWord::outputs || word == MasterWord::output ||
+                          word == MasterWord::identify || word == MasterWord::stop;
+    const bool is_late = std::ranges::any_of(sides_, &MasterSide::has_begun);
+    for (MasterSide& side : sides_) {
+      if (!is_order) side.finish_begun();
+      if (is_order && is_late) side.await_begin();
+    }
   }
 
   static void execute(MasterSide& side, const SequenceCommand& command) {
@@ -178,7 +192,13 @@ const SequenceRole& master_sequence_role() {
        .expected = "What the reference sends and reports when it is answered and ordered the same.",
        .tags = {},
        .catches = {}},
-      master_vocabulary()};
+      master_vocabulary(),
+      {{DerivedKind::values, {"implausible_inputs_rejected", "right_cycle_rejected"}},
+       {DerivedKind::faults, {"stop_bit_ignored", "wrong_cycle_accepted"}},
+       {DerivedKind::words, {"wrong_segment", "report_wrong"}},
+       {DerivedKind::states, {"copied_one_cycle_late", "report_wrong"}},
+       {DerivedKind::repetitions, {"stop_one_late", "cycle_unasked"}},
+       {DerivedKind::settings, {"telegrams_without_gap", "cycle_time_wrong"}}}};
   return role;
 }
 

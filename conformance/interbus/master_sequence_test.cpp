@@ -86,6 +86,22 @@ TEST(MasterSequence, NoSingleCommandTellsThem) {
   }
 }
 
+// One telegram too many is certain to be seen, however long the gaps are.
+TEST(MasterSequence, OneTelegramTooManyCountsWithLongGaps) {
+  const SequenceVocabulary& vocabulary = master_sequence_role().vocabulary;
+  const auto extra = static_cast<std::size_t>(vocabulary.find("extra") - vocabulary.words.data());
+  for (const std::int64_t gap : {0, 1'950, 11'201, 12'950, 100'000}) {
+    const Sequence sequence{{simple_command(vocabulary, extra, {{0, 2}})}, {{"telegram_gap_millibits", gap}}};
+    for (const std::string uri : {"ref", "mutant:telegram_count_ignored"}) {
+      const judge::CaseResult result =
+          run_sequence(suite_with_masters(), master_sequence_role(), sequence, master_search_of(uri, 1).setup)
+              .result;
+      EXPECT_EQ(result.verdict, uri == "ref" ? judge::Verdict::pass : judge::Verdict::fail) << gap << uri;
+      EXPECT_EQ(result.reason, uri == "ref" ? "" : "wrong_cycle_accepted") << gap;
+    }
+  }
+}
+
 // What a case needs another clock or hundreds of failures for.
 TEST(MasterSequence, FindsWhatTheCatalogueNames) {
   const std::set<std::string> outside{"counter_saturates", "no_clock_tolerance"};

@@ -189,6 +189,7 @@ void MasterSide::enter_run() {
          "an ID cycle that was asked for and two good data cycles after it within 8 cycles",
          has_identified ? "no good data cycles" : "no ID cycle");
   held_ = image();
+  note_end();
   is_next_ = false;
   is_ring_known_ = true;
   data_cycles_ = rejected_ = id_cycles_ = rejected_of_all_ = 0;
@@ -285,7 +286,13 @@ void MasterSide::cut_before(std::size_t station) {
 }
 
 void MasterSide::replace_ring(std::vector<VirtualStation> ring) {
-  const bool is_as_long = ring.size() == bench_.ring().stations().size();
+  const std::size_t before = bench_.ring().stations().size();
+  const bool is_as_long = ring.size() == before;
+  // How much later than measured an answer may come is the master's choice.
+  const interbus::Rules& rules = bench_.rules();
+  if (ring.size() > before &&
+      rules.forward_delay_half_bits + rules.return_delay_half_bits > line::kDataTelegramLevels)
+    return;
   bench_.ring().replace_ring(std::move(ring));
   is_ring_right_ = is_ring_known_ = false;
   if (is_as_long) return;
@@ -296,9 +303,42 @@ void MasterSide::replace_ring(std::vector<VirtualStation> ring) {
 
 // ---- cycles ----
 
+bool MasterSide::has_begun() const {
+  return is_running() && driven_->cycle_start() > ended_start_;
+}
+
+void MasterSide::await_begin() {
+  if (is_running()) bench_.run_to_cycle(ended_cycles_);
+}
+
+void MasterSide::finish_begun() {
+  if (is_running() && bench_.ring().has_cycle(ended_cycles_)) end_cycle();
+}
+
+void MasterSide::note_end() {
+  ended_cycles_ = bench_.ring().cycle_count();
+  if (ended_cycles_ > 0) ended_start_ = bench_.ring().last_cycle().start;
+}
+
+// One telegram too many is certain to count within a telegram, and where the pause has room for it.
+CycleFaults MasterSide::certain(CycleFaults faults) const {
+  const interbus::Rules& rules = bench_.rules();
+  constexpr std::int64_t kTelegram = line::kDataTelegramLevels;
+  const std::int64_t first_status = rules.telegram_gap_millibits / 1'000 + 1 + rules.status_pitch_bits;
+  if (first_status > kTelegram) faults.status_flag_flipped = false;
+  if (rules.software_time < kernel::levels_duration(3 * kTelegram, rules.bit_rate))
+    faults.trailing_telegram = false;
+  return faults;
+}
+
 void MasterSide::cycle(const CycleFaults& faults) {
+  finish_begun();
   if (!is_running()) return;
-  armed_ = faults;
+  armed_ = certain(faults);
+  end_cycle();
+}
+
+void MasterSide::end_cycle() {
   const std::uint64_t before = bench_.ring().cycle_count();
   driven_->forget_silence();
   if (!run_cycle()) return;
@@ -315,6 +355,7 @@ bool MasterSide::run_cycle() {
   const bool has_ended = bench_.run_cycle();
   expect(has_ended, "no_data_cycle", "the master goes on with cycles", "no cycle ends any more");
   if (!has_ended) return false;
+  note_end();
   expect(!must_identify || !bench_.finished().is_data, "no_id_cycle_after_error",
          "an ID cycle after a rejected cycle", "a data cycle");
   has_rejected_ = !bench_.finished().is_accepted;

@@ -76,8 +76,14 @@ class MasterSide {
   void stop(bool is_disturbed);
   // In run: the master is brought to that state, ordered this, and what comes of it is awaited.
   void order_in(interbus::MasterState state, EarlyOrder order);
-  // In run, up to the end of the next cycle, which suffers the faults.
+  // In run, up to the end of the next cycle, which suffers the faults; one that has begun ends before.
   void cycle(const interbus::CycleFaults& faults = {});
+  // In run: the next cycle has begun, be it within the call in which the one before ended, which no order
+  // after that call meets any more.
+  bool has_begun() const;
+  void await_begin();
+  // Ends a cycle whose beginning was awaited.
+  void finish_begun();
   // The application; nothing unless it is in run.
   void write(unsigned word, std::uint16_t value);
   void write_all(std::uint16_t even, std::uint16_t odd);
@@ -107,6 +113,9 @@ class MasterSide {
   void await_run();
   void enter_run();
   void settle();
+  void end_cycle();
+  void note_end();
+  interbus::CycleFaults certain(interbus::CycleFaults faults) const;
   bool run_cycle();
   void note_cycle();
   void note_state(bool is_located);
@@ -129,6 +138,8 @@ class MasterSide {
   std::shared_ptr<DrivenTelegrams> driven_;
   kernel::Time cycle_start_{};
   bool is_next_ = false;  // the cycle before was one of this run
+  std::uint64_t ended_cycles_ = 0;
+  kernel::Time ended_start_{};  // of the last one that has ended
   std::optional<interbus::CycleFaults> armed_;
   unsigned disturbed_ = 0;
   std::uint64_t states_seen_ = 0;        // a bit for each, at the beginnings of cycles

@@ -169,6 +169,20 @@ interbus::MasterConfiguration configuration_of_sequence(const field::Settings& s
   return configuration;
 }
 
+namespace {
+
+// With copies, after rejected cycles, with an ID cycle ordered, off, without a bus and on another ring.
+std::vector<std::vector<NamedCommand>> states_of_a_master() {
+  return {{{"power", {{"copies", 2}}}},
+          {{"bad"}},
+          {{"outputs", {{"even", 0xA55A}, {"odd", 1}}}, {"identify"}},
+          {{"stop"}},
+          {{"lost", {{"count", 12}}}},
+          {{"power", {{"ring", 5}, {"expects", 1}}}}};
+}
+
+}  // namespace
+
 SequenceVocabulary master_vocabulary() {
   SequenceVocabulary vocabulary{
       .words = words_of_answers(), .unit = "telegram", .levels_per_unit = line::kDataTelegramLevels};
@@ -184,7 +198,7 @@ SequenceVocabulary master_vocabulary() {
   for (auto group : {words_of_users, words_of_rings}) {
     for (SequenceWord& word : group()) vocabulary.words.push_back(std::move(word));
   }
-  return vocabulary;
+  return with_beginnings(std::move(vocabulary), states_of_a_master());
 }
 
 namespace {

@@ -1,5 +1,7 @@
 #include "conformance/interbus/returned_line.hpp"
 
+#include <algorithm>
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -34,7 +36,10 @@ Arrival ReturnedLine::judge(const interbus::SeenCycle& sent, kernel::Time verdic
   if (sent.transfer_octets < 2 || received_.size() < count) return Arrival::wrong;
   if (!is_cycle(sent.transfer_octets, sent.is_id_cycle)) return Arrival::wrong;
   if (received_.size() == count) return Arrival::right;
-  return received_[count].start < verdict ? Arrival::wrong : Arrival::unsure;
+  constexpr std::int64_t kOwnAndOneMore = 2 * line::kDataTelegramLevels;
+  const kernel::Time certain =
+      received_[count - 1].start + kernel::levels_duration(kOwnAndOneMore, rules_.bit_rate);
+  return received_[count].start < std::min(verdict, certain) ? Arrival::wrong : Arrival::unsure;
 }
 
 // The loopback word comes back last; in an ID cycle, where the register ends.

@@ -14,7 +14,7 @@ namespace fieldproof::conformance {
 enum class Arrival : std::uint8_t {
   right,   // the telegrams of the cycle and no others, with their check, a clean status, the loopback word
   wrong,   // something else
-  unsure,  // right, and after the verdict more: nobody must wait for that
+  unsure,  // right, and a telegram or the verdict later more: nobody must wait for that
 };
 
 class ReturnedLine final : public segment::Tap {

@@ -210,16 +210,10 @@ void RingEmulator::on_status() {
   ++statistics_.status_telegrams;
   std::uint64_t levels = status_levels_;
   unsigned count = line::kStatusTelegramLevels;
-  if (std::exchange(expects_status_, false) && is_faulted_) {
-    if (faults_.status_flag_flipped) {
-      // The receiver takes the idle line after it for data.
-      levels = (levels | ~std::uint64_t{0} << count) ^ (std::uint64_t{1} << flag_level_);
-      count = line::kDataTelegramLevels;
-    }
-    if (faults_.trailing_telegram) {
-      emit_levels(telegram_bit_, code_.levels_of(line::kDataTelegram | line::kControl, 0),
-                  line::kDataTelegramLevels);
-    }
+  if (std::exchange(expects_status_, false) && is_faulted_ && faults_.status_flag_flipped) {
+    // The receiver takes the idle line after it for data.
+    levels = (levels | ~std::uint64_t{0} << count) ^ (std::uint64_t{1} << flag_level_);
+    count = line::kDataTelegramLevels;
   }
   emit_levels(telegram_bit_, levels, count);
 }

@@ -199,6 +199,13 @@ void RingEmulator::emit(const line::Telegram& telegram, std::uint8_t octet) {
   }
   emit_levels(telegram_bit_, levels, line::kDataTelegramLevels);
   if (faults_.duplicated == index) emit_levels(0, levels, line::kDataTelegramLevels);
+  // At its place after any gap, however long the usual ones are: a master need not wait for a later one.
+  const bool is_last = checked_ == kCheckOctets + rules_.end_telegrams;
+  if (faults_.trailing_telegram && is_last) {
+    constexpr std::size_t kGap = 2;
+    emit_levels(telegram_bit_ + line::kDataTelegramLevels + kGap,
+                code_.levels_of(line::kDataTelegram | line::kControl, 0), line::kDataTelegramLevels);
+  }
 }
 
 // ---- the log ----

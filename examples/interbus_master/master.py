@@ -154,7 +154,7 @@ class Master:
     """What all masters do; in which units it is said and heard is left to others."""
     def __init__(self, stream, settings, coding, returned):
         self.stream, self.s, self.coding, self.returned, self.items = stream, settings, coding, returned, {}
-        self.state, self.stations, self.last_driven = OFF, [], -SECOND
+        self.state, self.stations, self.last_driven = OFF, [], -NEVER
         self.inputs, self.outputs = [], []
         self.start_at = self.verdict_at = NEVER
         self.search, self.is_stopping, self.is_id_needed = None, False, False
@@ -451,8 +451,9 @@ class Master:
                 self.inputs[word] = value
                 self.put(INPUT + word, value, now)
         for n in range(self.s["copy"]):
-            copy = self.s[f"copy_{n}"]
-            self.set_output(copy >> 16, self.inputs[copy & 0xFFFF], now)
+            to, word = divmod(self.s[f"copy_{n}"], 1 << 16)
+            if word < len(self.inputs) and to < len(self.outputs):  # of a ring that has both
+                self.set_output(to, self.inputs[word], now)
 
     def reject(self, now):
         self.count(IN_A_ROW, now)

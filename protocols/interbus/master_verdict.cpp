@@ -192,11 +192,10 @@ void Master::on_recognition_ids(std::span<const std::uint16_t> ids) {
 }
 
 void Master::on_recognition_rejected() {
+  const bool is_alone = topology_.stations().empty();
   const bool is_locating = state_ == MasterState::locating;
-  if (returned_.count() == 0 && topology_.stations().empty()) {
-    if (is_locating) return on_fault_found(-1);
-    return enter_ready(action_at_);
-  }
+  if (is_alone && !is_locating) return enter_ready(action_at_);
+  if (is_alone && returned_.count() == 0) return on_fault_found(-1);
   supervision_.count_consecutive();
   if (!reaches_stop(supervision_.consecutive_bad())) return;
   on_fault_found(topology_.probed_station());
