@@ -308,6 +308,8 @@ TEST_F(Attachments, InterbusMastersInPythonAreRightInWhatIsTheirChoice) {
       {R"("stop_after_bad_cycles": 2)",
        R"({"do": "lost", "count": 2, "level": 1}, {"do": "start", "disturbed": 2})"},
       {R"("bit_rate": 100000000)", ""},
+      {R"("end_telegrams": 749)", R"({"do": "bad", "count": 1}, {"do": "cycles", "count": 1},
+                                     {"do": "cut", "station": 0})"},
       {"",
        R"({"do": "power", "ring": 0, "expects": 0, "copies": 1, "cycle_ms": 0, "disturbed": 0, "limits": 0},
               {"do": "ring", "change": 2, "station": 0}, {"do": "start", "disturbed": 0})"}};

@@ -90,6 +90,7 @@ class MasterBench final : public CaseBench {
   // Any cycle that the master finishes next. False when it finishes none any more, or ID cycles and nothing
   // else.
   bool run_cycle();
+  kernel::Duration longest_cycle() const;
   // Until the ring has seen so many cycles, counted from 0, and the next one begins.
   void run_to_cycle(std::uint64_t number);
 
@@ -123,7 +124,6 @@ class MasterBench final : public CaseBench {
  private:
   void on_cycle_end(kernel::Time now, bool data_cycle, bool accepted);
   void ask_script(const interbus::RingEmulator::CycleInfo& info, interbus::CycleFaults& faults);
-  kernel::Duration longest_cycle() const;
   std::vector<unsigned> input_words() const;
   std::vector<std::uint16_t> inputs() const;
   void run_to_accepted_data_cycle(CaseJudge& judge);

@@ -226,9 +226,18 @@ void MasterSide::stop(bool is_disturbed) {
 void MasterSide::settle() {
   for (int n = 0; n < kMostIdles; ++n) {
     const std::uint64_t before = bench_.ring().cycle_count();
-    bench_.run_for(kIdle);
+    bench_.run_for(idle());
     if (bench_.ring().cycle_count() == before && is_idle()) return;
   }
+}
+
+// When after the silence a master looks for the fault is its choice: it is awaited, or that is not even over.
+kernel::Duration MasterSide::idle() const {
+  const interbus::Rules& rules = bench_.rules();
+  constexpr kernel::Duration kUntilFirstCycle = 20 * kernel::kMillisecond;
+  if (kIdle < rules.silence_limit + rules.silence_tolerance) return kIdle;
+  return std::max(
+      kIdle, rules.silence_limit + 2 * rules.silence_tolerance + kUntilFirstCycle + bench_.longest_cycle());
 }
 
 void MasterSide::wait(kernel::Duration duration) {
@@ -279,7 +288,8 @@ void MasterSide::cut_before(std::size_t station) {
   bench_.ring().cut_after(stations[station % stations.size()].before);
   is_ring_right_ = false;
   for (unsigned n = 0; n < 2 * bench_.rules().stop_after_bad_cycles && is_running(); ++n) cycle();
-  if (!is_running()) bench_.run_until([this] { return bench_.status().has_fault_location; }, kernel::kSecond);
+  if (!is_running())
+    bench_.run_until([this] { return bench_.status().has_fault_location; }, longest_recognition());
   judge_counters_since_entry();
   note_state(true);
   bench_.ring().mend();

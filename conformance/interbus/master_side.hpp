@@ -113,6 +113,7 @@ class MasterSide {
   void await_run();
   void enter_run();
   void settle();
+  kernel::Duration idle() const;
   void end_cycle();
   void note_end();
   interbus::CycleFaults certain(interbus::CycleFaults faults) const;
