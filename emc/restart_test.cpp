@@ -63,9 +63,9 @@ struct HangingFf final : HangingStation<fieldbus_dll::FfStation> {
 
 struct HangingIsa final : HangingStation<fieldbus_dll::IsaDle> {
   using HangingStation::HangingStation;
-  void start(kernel::Time now) override {
+  bool start(kernel::Time now) override {
     hanging_.start();
-    IsaDle::start(now);
+    return IsaDle::start(now);
   }
 };
 

@@ -56,14 +56,6 @@ class LiveFromTheStart : public FfStation {
   }
 };
 
-class ImpossibleRulesTaken : public FfStation {
-  using FfStation::FfStation;
-  bool start(Time now) override {
-    if (!FfStation::start(now)) enter(fieldbus_dll::FfState::offline);
-    return true;
-  }
-};
-
 // ---- tokens ----
 
 class FfPriorityInverted : public FfStation {
@@ -305,15 +297,6 @@ class SubscribedWithoutLink : public FfStation {
 };
 
 // ---- frames ----
-
-class DeafToLongFrames : public FfStation {
-  using FfStation::FfStation;
-  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
-    std::vector<Arrived> all = FfStation::heard_in(reception);
-    std::erase_if(all, [](const Arrived& one) { return one.octets.size() > 128; });
-    return all;
-  }
-};
 
 // Frames whose check this says to be right, besides those whose check is.
 class TakesOtherChecks : public FfStation {

@@ -35,20 +35,6 @@ FfStep answered(const std::string& what, const std::string& reason,
   });
 }
 
-void expect_lengths(FfScene& scene) {
-  for (const DrivenDlpdu& one : scene.bench.driven()) {
-    const kernel::Duration length = one.end - one.begin;
-    const kernel::Duration right = scene.bench.frame(one.octets.size());
-    scene.judge.expect(length + kLinkRounding >= right && length <= right + kLinkRounding,
-                       "frame_length_wrong", [&] {
-                         return Mismatch{{fmt::format("{}: {} octets of preamble", kernel::describe(right),
-                                                      scene.bench.link().preamble_octets)},
-                                         fmt::format("{} of {}", one.text(), kernel::describe(length)),
-                                         one.begin};
-                       });
-  }
-}
-
 }  // namespace
 
 void with_other_codes(FfConfiguration& configuration) {
@@ -101,10 +87,7 @@ std::vector<FfCase> ff_link_settings_cases() {
                          line("preamble and delimiters"),
                          {{"preamble_of_the_usual_link", "frame_length_wrong"},
                           {"mute_after_activation", "not_published"}}),
-               {{},
-                {all_served,
-                 expected<FfScene>("each of its DLPDUs has eight octets of preamble", expect_lengths)}},
-               {.change = with_long_preamble, .is_live = false}),
+               {{}, {all_served, preambles(8)}}, {.change = with_long_preamble, .is_live = false}),
       on_chart(must_case("fieldbus_dll/ff_device/settings/other_codes_are_used", "FF-43",
                          "The first octets of DLPDUs are those of the link.",
                          own("codes are settings, because their standard was not at hand"),

@@ -6,6 +6,7 @@
 #include "conformance/fieldbus_dll/ff_las_sequence_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_request_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_sequence_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/link_seeded_faults.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -27,7 +28,8 @@ std::vector<FfRow> ff_token_rows() {
       {"answers_late", "", "begins an octet after V(MRD) x V(ST)", mutant<AnswersLate>()},
       {"answers_for_all_nodes", "", "takes everything for its own", mutant<AnswersForAllNodes>()},
       {"live_from_the_start", "", "uses tokens without having been activated", mutant<LiveFromTheStart>()},
-      {"impossible_rules_taken", "", "starts with a V(MID) that cannot be", mutant<ImpossibleRulesTaken>()},
+      {"impossible_rules_taken", "", "starts with a V(MID) that cannot be",
+       mutant<link_seeded_faults::ImpossibleRulesTaken<FfStation>>()},
       {"priority_inverted", "", "sends what is at most as urgent as the token", mutant<FfPriorityInverted>()},
       {"priority_ignored", "", "does not look at the priority of a token", mutant<FfPriorityIgnored>()},
       {"fifo_across_priorities", "", "sends in the order of submission", mutant<FfFifoAcrossPriorities>()},
@@ -193,7 +195,7 @@ std::vector<FfRow> ff_frame_rows() {
       {"codes_of_the_usual_link", "", "knows the usual codes, whatever its link has",
        with_rules<FfStation>([](FfRules& rules) { rules.codes = {}; })},
       {"deaf_to_long_frames", "", "does not receive frames of more than 128 octets",
-       mutant<DeafToLongFrames>()},
+       mutant<link_seeded_faults::DeafToLongFrames<FfStation>>()},
       {"short_silence", "", "begins V(MID) / 2 after what was on the line",
        with_rules<FfStation>([](FfRules& rules) { rules.link.inter_pdu_delay_octets /= 2; })},
       {"no_silence_behind_own", "", "begins an octet after its own frames", mutant<NoSilenceBehindOwn>()},
@@ -204,10 +206,13 @@ std::vector<FfRow> ff_request_rows() {
   using namespace ff_seeded_faults;
   return {
       {"unknown_requests_taken", "", "refuses no request that it does not know",
-       mutant<UnknownRequestsTaken>()},
-      {"orders_taken", "", "takes the order of a link master, though it is none", mutant<OrdersTaken>()},
-      {"priority_zero_accepted", "", "does not refuse data of priority 0", mutant<AcceptsPriority>(0U)},
-      {"priority_four_accepted", "", "does not refuse data of priority 4", mutant<AcceptsPriority>(4U)},
+       mutant<link_seeded_faults::UnknownRequestsTaken<FfStation>>()},
+      {"orders_taken", "", "takes the order of a link master, though it is none",
+       mutant<link_seeded_faults::OrdersTaken<FfStation>>()},
+      {"priority_zero_accepted", "", "does not refuse data of priority 0",
+       mutant<link_seeded_faults::AcceptsPriority<FfStation, fieldbus_dll::FfRequest>>(0U)},
+      {"priority_four_accepted", "", "does not refuse data of priority 4",
+       mutant<link_seeded_faults::AcceptsPriority<FfStation, fieldbus_dll::FfRequest>>(4U)},
       {"no_data_is_the_usual_data", "", "takes a longest DLSDU of 0 for that of the usual link",
        with_rules<FfStation>([](FfRules& rules) {
          if (rules.link.most_data[2] == 0) rules.link.most_data[2] = 64;
@@ -235,18 +240,18 @@ std::vector<FfRow> ff_reception_rows() {
   using namespace ff_seeded_faults;
   return {
       {"bits_counted_on", "", "counts bits on when a start delimiter cuts an octet off",
-       mutant<BitsCountedOn>()},
+       mutant<link_seeded_faults::BitsCountedOn<FfStation>>()},
       {"silence_from_the_delimiter", "", "counts silence from the end delimiter, whatever follows",
-       mutant<SilenceFromTheDelimiter>()},
+       mutant<link_seeded_faults::SilenceFromTheDelimiter<FfStation>>()},
       {"last_of_a_transmission", "", "takes the last frame of a transmission only",
-       mutant<LastOfATransmission>()},
+       mutant<link_seeded_faults::LastOfATransmission<FfStation>>()},
       {"everybody_on_a_link", "", "takes FFFF with a link for everybody", mutant<TakesForEverybody>(true)},
       {"everybody_of_a_node", "", "takes the selector FF of any node for everybody",
        mutant<TakesForEverybody>(false)},
       {"deaf_behind_71_minutes", "", "receives nothing more after 2^32 microseconds",
-       mutant<DeafBehind71Minutes>()},
+       mutant<link_seeded_faults::DeafBehind71Minutes<FfStation>>()},
       {"levels_are_half_bits", "", "takes each level for half a bit, however fine they are",
-       mutant<LevelsAreHalfBits>()},
+       mutant<link_seeded_faults::LevelsAreHalfBits<FfStation>>()},
   };
 }
 

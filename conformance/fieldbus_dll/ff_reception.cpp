@@ -3,6 +3,7 @@
 #include <array>
 
 #include "conformance/fieldbus_dll/ff_scene.hpp"
+#include "conformance/fieldbus_dll/link_transmission.hpp"
 
 // What may stand in one transmission, how fine its levels may be, who is everybody, and how long it may be
 // silent before.
@@ -12,33 +13,8 @@ namespace {
 using fieldbus_dll::FfAddress;
 using fieldbus_dll::Priority;
 
-constexpr std::size_t kHalfBitsOfOctet = 16;
-constexpr std::int64_t kLevelsUnderBursts = 4'000'000;  // a second
-
 Octets probe(const FfScene& scene) {
   return {scene.bench.rules().codes.pn, scene.bench.node()};
-}
-
-line::Levels frame_of(const FfScene& scene, const Octets& octets) {
-  return half_bits_of_frame(with_frame_check(octets), scene.bench.link().preamble_octets);
-}
-
-// A PN that ends after an octet and 1 to 7 bits, by the start delimiter of another.
-line::Levels begun_within_an_octet(FfScene& scene) {
-  const line::Levels whole = frame_of(scene, probe(scene));
-  const std::size_t preamble = scene.bench.link().preamble_octets * kHalfBitsOfOctet;
-  line::Levels levels;
-  levels.append(whole, 0, preamble + 2 * kHalfBitsOfOctet + 2 * (1 + scene.turn % 7));
-  levels.append(whole, preamble, whole.size() - preamble);
-  return levels;
-}
-
-// Symbols that are data, and no frame.
-line::Levels with_tail(FfScene& scene) {
-  const std::size_t octets = 1 + 9 * scene.turn % 20;
-  line::Levels levels = frame_of(scene, probe(scene));
-  for (std::size_t n = 0; n < octets * kHalfBitsOfOctet / 2; ++n) levels.append(n % 3 == 0 ? 0b10 : 0b01, 2);
-  return levels;
 }
 
 void expect_both_delivered(FfScene& scene) {
@@ -48,7 +24,7 @@ void expect_both_delivered(FfScene& scene) {
   for (Octets& one : data) {
     one = bench.numbered_data(6);
     const FfAddress user = fieldbus_dll::address_of(bench.node(), 0x30);
-    levels.append(frame_of(scene, bench.dt1(Priority::normal, user, FfBench::kPeersAddress, one)));
+    levels.append(frame_of_link(bench, bench.dt1(Priority::normal, user, FfBench::kPeersAddress, one)));
   }
   bench.user().data.clear();
   bench.send_half_bits(levels);
@@ -67,17 +43,10 @@ Octets to_nobody(FfScene& scene) {
   return scene.bench.dt1(Priority::normal, to, link | FfBench::kPeersAddress, scene.fresh(6));
 }
 
-// With a pulse of a level, half-way to the middle of a half bit.
 void send_finely(FfScene& scene) {
   FfBench& bench = scene.bench;
-  const line::Levels half_bits =
-      frame_of(scene, scene.turn % 2 == 0 ? probe(scene) : bench.cd(FfBench::kPublished));
-  const auto fine = static_cast<std::size_t>(kLevelsUnderBursts / (2 * bench.link().bit_rate));
-  line::Waveform wave{bench.now(), kLevelsUnderBursts, {}};
-  for (std::size_t n = 0; n < half_bits.size(); ++n) wave.levels.append_fill(half_bits[n], fine);
-  const std::size_t half_bit = 2 * kHalfBitsOfOctet + bench.random().below(half_bits.size() / 2);
-  wave.levels.flip(half_bit * fine + fine / 4);
-  scene.sent = bench.send_wave(wave);
+  scene.sent =
+      bench.send_wave(with_pulse(bench, scene.turn % 2 == 0 ? probe(scene) : bench.cd(FfBench::kPublished)));
 }
 
 void expect_fine_answered(FfScene& scene) {
@@ -86,12 +55,6 @@ void expect_fine_answered(FfScene& scene) {
   const DrivenDlpdu one = scene.expect_answer(what, "not_received");
   scene.judge.expect(is_probe ? is_of(one, scene.bench.rules().codes.pr) : is_dt3(scene.bench, one),
                      "dlpdu_wrong", [&] { return Mismatch{{what}, scene.bench.words(one), one.begin}; });
-}
-
-void expect_long_silence(FfScene& scene) {
-  const kernel::Time end = scene.bench.now() + 72 * 60 * kernel::kSecond;
-  scene.judge.expect(!scene.bench.next_begins(end), "speaks_unasked", "silence: nothing asks for it",
-                     "the station spoke");
 }
 
 }  // namespace
@@ -108,14 +71,21 @@ std::vector<FfCase> ff_reception_cases() {
                {{},
                 {repeat({7, 21}, {drive("a PN that a start delimiter and a whole PN cut off after an octet "
                                         "and 1 to 7 bits, in turn",
-                                        begun_within_an_octet),
+                                        [](FfScene& scene) {
+                                          return begun_within_an_octet(scene.bench, probe(scene),
+                                                                       1 + scene.turn % 7);
+                                        }),
                                   probe_response("no_probe_response")})}}),
       on_chart(must_in_time("fieldbus_dll/ff_device/frame/a_tail_is_no_silence", "FF-35",
                             "Silence begins where the transmission ends, whatever is behind the frame.",
                             own("a transmission ends when nobody drives the line any more"),
                             {{"silence_from_the_delimiter", "answers_too_early"}}),
                {{},
-                {repeat({4, 40}, {drive("a PN with 1 to 19 octets behind its end delimiter", with_tail),
+                {repeat({4, 40}, {drive("a PN with 1 to 19 octets behind its end delimiter",
+                                        [](FfScene& scene) {
+                                          return with_tail(scene.bench, probe(scene),
+                                                           1 + 9 * scene.turn % 20);
+                                        }),
                                   probe_response("no_probe_response")})}}),
       on_chart(must_case("fieldbus_dll/ff_device/frame/two_in_one_transmission_are_received", "FF-37",
                          "Of a transmission each frame is received.", own("each frame of a transmission"),
@@ -147,14 +117,13 @@ std::vector<FfCase> ff_reception_cases() {
                                   send_finely(scene);
                                   expect_fine_answered(scene);
                                 }}})}}),
-      on_chart(
-          must_case("fieldbus_dll/ff_device/probe/after_72_minutes_it_is_what_it_was", "FF-48",
-                    "A station that hears nothing for long is what it was.",
-                    own("silence is no event for a device"),
-                    {{"deaf_behind_71_minutes", "no_probe_response"}}),
-          {{},
-           {expected<FfScene>("nothing is sent while 72 minutes pass", expect_long_silence), pn(),
-            probe_response("no_probe_response"), pt(normal, 500), used({}, {"", "sent_twice"}), serves()}}),
+      on_chart(must_case("fieldbus_dll/ff_device/probe/after_72_minutes_it_is_what_it_was", "FF-48",
+                         "A station that hears nothing for long is what it was.",
+                         own("silence is no event for a device"),
+                         {{"deaf_behind_71_minutes", "no_probe_response"}}),
+               {{},
+                {long_silence(), pn(), probe_response("no_probe_response"), pt(normal, 500),
+                 used({}, {"", "sent_twice"}), serves()}}),
   };
 }
 

@@ -5,33 +5,9 @@
 #include <vector>
 
 #include "conformance/fieldbus_dll/ff_seeded_faults.hpp"
-#include "harness/line/delimited_frame.hpp"
 
-// Basic devices that take other requests, keep less than their settings say, or take apart what arrives
-// otherwise.
+// Basic devices that keep less than their settings say, or take other addresses for theirs.
 namespace fieldproof::conformance::ff_seeded_faults {
-
-class UnknownRequestsTaken : public FfStation {
-  using FfStation::FfStation;
-  bool ask(const Octets&, Time) override { return true; }
-};
-
-class OrdersTaken : public FfStation {
-  using FfStation::FfStation;
-  bool order_transfer(std::uint8_t, Time) override { return true; }
-};
-
-class AcceptsPriority : public FfStation {
- public:
-  AcceptsPriority(const FfConfiguration& configuration, unsigned priority)
-      : FfStation(configuration), priority_(static_cast<Priority>(priority)) {}
-
- private:
-  bool submit(const FfRequest& request, Time now) override {
-    return request.priority == priority_ || FfStation::submit(request, now);
-  }
-  Priority priority_;
-};
 
 class BuffersOf64 : public FfStation {
   using FfStation::FfStation;
@@ -104,51 +80,6 @@ class NodeWithSign : public FfStation {
   }
 };
 
-// ---- what arrives ----
-
-class BitsCountedOn : public FfStation {
-  using FfStation::FfStation;
-  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
-    constexpr std::size_t kOctet = 16;
-    const auto frames = line::delimited_frames_in(reception, rules().link.bit_rate);
-    for (std::size_t n = 1; n < frames.size(); ++n) {
-      const bool is_cut = (frames[n].half_bit - frames[n - 1].half_bit) % kOctet != 0;
-      if (frames[n - 1].end == line::FrameEnd::begun_anew && is_cut) return {};
-    }
-    return FfStation::heard_in(reception);
-  }
-};
-
-class SilenceFromTheDelimiter : public FfStation {
-  using FfStation::FfStation;
-  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
-    constexpr std::size_t kOctet = 16;
-    const auto frames = line::delimited_frames_in(reception, rules().link.bit_rate);
-    over_ = reception.end();
-    if (!frames.empty()) {
-      const std::size_t last = frames.back().half_bit + kOctet * (frames.back().octets.size() + 2);
-      delimited_ =
-          kernel::level_time(reception.start, static_cast<std::int64_t>(last), 2 * rules().link.bit_rate);
-    }
-    return FfStation::heard_in(reception);
-  }
-  Time may_begin() const override {
-    const Time since = line().silent_since();
-    return since == over_ ? std::max(since, delimited_ + silence_before_sending()) : FfStation::may_begin();
-  }
-  Time over_ = kernel::kNever;
-  Time delimited_ = kernel::kStart;
-};
-
-class LastOfATransmission : public FfStation {
-  using FfStation::FfStation;
-  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
-    std::vector<Arrived> all = FfStation::heard_in(reception);
-    if (all.size() > 1) all.erase(all.begin(), all.end() - 1);
-    return all;
-  }
-};
-
 // FFFF on any link, or selector FF of any node.
 class TakesForEverybody : public FfStation {
  public:
@@ -163,25 +94,6 @@ class TakesForEverybody : public FfStation {
     FfStation::on_dlpdu(dlpdu, place);
   }
   bool has_link_;
-};
-
-class DeafBehind71Minutes : public FfStation {
-  using FfStation::FfStation;
-  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
-    const bool is_deaf = reception.start - kernel::kStart > (std::int64_t{1} << 32) * kernel::kMicrosecond;
-    return is_deaf ? std::vector<Arrived>{} : FfStation::heard_in(reception);
-  }
-};
-
-class LevelsAreHalfBits : public FfStation {
-  using FfStation::FfStation;
-  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
-    line::Waveform other = reception;
-    other.rate = 2 * rules().link.bit_rate;
-    std::vector<Arrived> all = FfStation::heard_in(other);
-    for (Arrived& one : all) one = {std::move(one.octets), reception.start, reception.end()};
-    return all;
-  }
 };
 
 }  // namespace fieldproof::conformance::ff_seeded_faults

@@ -50,7 +50,7 @@ IsaBench::IsaBench(const IsaNeeds& needs, const IsaSetting& setting)
       station_(setting.make_device(configuration_)) {
   start_recording(setting, rules());
   station_->wire(attach_station(*station_, setting.plan), user_);
-  station_->start(now());
+  has_started_ = station_->start(now());
   refresh_iut();
 }
 
@@ -61,9 +61,16 @@ bool IsaBench::submit(fieldbus_dll::IsaService service, Priority priority, const
   return is_taken;
 }
 
-void IsaBench::order_transfer(std::uint8_t node) {
-  station_->order_transfer(node, now());
+bool IsaBench::order_transfer(std::uint8_t node) {
+  const bool is_taken = station_->order_transfer(node, now());
   refresh_iut();
+  return is_taken;
+}
+
+bool IsaBench::ask_user_request(const Octets& request) {
+  const bool is_taken = station_->ask(request, now());
+  refresh_iut();
+  return is_taken;
 }
 
 std::string IsaReport::text() const {
@@ -72,7 +79,7 @@ std::string IsaReport::text() const {
 
 void IsaBench::set_supply(bool is_on) {
   if (is_on) {
-    station_->start(now());
+    has_started_ = station_->start(now());
   } else {
     station_->stop(now());
   }

@@ -60,7 +60,9 @@ class IsaUpperTester final : public fieldbus_dll::IsaUser {
     events.push_back(event);
     reports.push_back({{}, event});
   }
-  bool is_reply_coming(fieldbus_dll::Priority, kernel::Time) override { return works_on_reply; }
+  bool is_reply_coming(fieldbus_dll::Priority least, kernel::Time) override {
+    return works_on_reply && works_on.value_or(least) == least;
+  }
 
   bool was_delivered(const Octets& data) const;
 
@@ -68,6 +70,7 @@ class IsaUpperTester final : public fieldbus_dll::IsaUser {
   std::vector<fieldbus_dll::IsaEvent> events;
   std::vector<IsaReport> reports;  // all of these, in order
   bool works_on_reply = false;
+  std::optional<fieldbus_dll::Priority> works_on{};  // on data of this priority only
 };
 
 class IsaBench final : public LinkBench {
@@ -93,7 +96,11 @@ class IsaBench final : public LinkBench {
   bool submit_unit_data(Priority priority, const Octets& data) {
     return submit(fieldbus_dll::IsaService::unit_data, priority, data);
   }
-  void order_transfer(std::uint8_t node);
+  // False when the IUT refuses it.
+  bool order_transfer(std::uint8_t node);
+  bool ask_user_request(const Octets& request);
+  // It has taken its settings.
+  bool has_started() const { return has_started_; }
   void set_supply(bool is_on);
   std::string words(const DrivenDlpdu& dlpdu) const override;
 
@@ -116,6 +123,7 @@ class IsaBench final : public LinkBench {
   fieldbus_dll::IsaConfiguration configuration_;
   IsaUpperTester user_;
   std::unique_ptr<fieldbus_dll::IsaDevice> station_;
+  bool has_started_ = false;
 };
 
 }  // namespace fieldproof::conformance

@@ -46,11 +46,11 @@ void judge_end(IsaBench& bench, CaseJudge& judge) {
 
 const std::vector<IsaCase>& isa_cases() {
   static const std::vector<IsaCase> cases = [] {
-    static constexpr std::array kChapters{isa_single_token_cases, isa_sequence_cases,   isa_duration_cases,
-                                          isa_rejection_cases,    isa_compelling_cases, isa_compelled_cases,
-                                          isa_data_cases,         isa_line_cases,       isa_schedule_cases,
-                                          isa_supervision_cases,  isa_transfer_cases,   isa_immunity_cases,
-                                          isa_timers_cases};
+    static constexpr std::array kChapters{
+        isa_single_token_cases, isa_sequence_cases,    isa_duration_cases,      isa_rejection_cases,
+        isa_compelling_cases,   isa_compelled_cases,   isa_data_cases,          isa_line_cases,
+        isa_schedule_cases,     isa_supervision_cases, isa_transfer_cases,      isa_immunity_cases,
+        isa_timers_cases,       isa_request_cases,     isa_link_settings_cases, isa_reception_cases};
     auto all = cases_of<IsaCase>(kChapters, isa_details());
     all.push_back(canary("isa_dle"));
     all.push_back(canary("isa_las"));

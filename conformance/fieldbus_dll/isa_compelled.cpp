@@ -53,6 +53,26 @@ IsaStep replied(std::size_t number, std::string reason_for_other_data) {
       });
 }
 
+// Of one priority, and then a CD of another, by the turn.
+Priority of_turn(unsigned turn) {
+  return static_cast<Priority>(1 + turn % 3);
+}
+
+void compel_beside_what_is_worked_out(IsaScene& scene) {
+  scene.bench.user().works_on_reply = true;
+  scene.bench.user().works_on = of_turn(scene.turn);
+  scene.sent = scene.bench.send(scene.bench.cd(of_turn(scene.turn / 3)));
+}
+
+void expect_reply_unless_worked_out(IsaScene& scene) {
+  if (of_turn(scene.turn) == of_turn(scene.turn / 3))
+    return expect_silence(scene.bench, scene.judge, "does_not_wait", "data of this priority are worked out");
+  const DrivenDlpdu dt = expect_next(scene.bench, scene.judge, "no_reply", "an empty DT");
+  scene.judge.expect(dt.rest().empty(), "data_wrong",
+                     [&] { return Mismatch{{"an empty DT"}, dt.text(), dt.begin}; });
+  scene.bench.wait(scene.bench.octets(32));
+}
+
 void with_other_isa_codes(fieldbus_dll::IsaConfiguration& configuration) {
   configuration.rules.codes = {
       .cd = 0xC0, .dt = 0x10, .du = 0x20, .et = 0x80, .es = 0x40, .ee = 0xE0, .tl = 0x35};
@@ -107,6 +127,29 @@ std::vector<IsaCase> isa_compelled_cases() {
                {{},
                 {offer(normal), cd(urgent), replied(0, "lower_priority_sent"), over, offer(urgent),
                  cd(normal), replied(2, "data_wrong"), over, cd(normal), replied(1, "data_wrong"), over}}),
+      on_chart(
+          must_case("fieldbus_dll/isa_dle/compelled/its_priority_is_what_is_waited_for", "ISA-23",
+                    "A station waits for data of the priority of the CD.",
+                    own("what is worked out is asked of item 16 + the priority of the CD"),
+                    {{"waits_for_urgent_data", "no_reply"}, {"waits_for_any_data", "no_reply"}}, {forming}),
+          {{},
+           {repeat({9, 9}, {IsaStep{"the user works on data of a priority alone; a CD of each priority, "
+                                    "each with each in turn",
+                                    "silence where they are the same, else an empty DT",
+                                    [](IsaScene& scene) {
+                                      compel_beside_what_is_worked_out(scene);
+                                      expect_reply_unless_worked_out(scene);
+                                    }}}),
+            serves()}}),
+      on_chart(
+          must_case("fieldbus_dll/isa_dle/compelled/less_urgent_data_within_fd_are_kept", "ISA-25",
+                    "A reply has at least the priority of the CD, also within V(FD).",
+                    own("priority of a CD"), {{"anything_ends_the_wait", "lower_priority_sent"}}, {forming}),
+          {{2, 6},
+           {works_on_reply(), cd(urgent), until_fd(-8), offer(time_available),
+            silence("lower_priority_sent", "what came is less urgent than the CD"), works_on_reply(),
+            cd(normal), until_fd(-8), offer(urgent), replied(2, "data_wrong"), over, cd(time_available),
+            replied(1, "data_wrong"), over}}),
       on_chart(must_case("fieldbus_dll/isa_dle/settings/other_codes_are_used", "ISA-22",
                          "The first octets of DLPDUs are those of the link.",
                          own("codes are settings, because their standard was not at hand"),

@@ -70,8 +70,8 @@ class SupervisesLongAfterKept : public JudgesHolders {
 
 class SecondTransferIgnored : public IsaLas {
   using IsaLas::IsaLas;
-  void order_transfer(std::uint8_t node, Time now) override {
-    if (!std::exchange(was_ordered_, true)) IsaLas::order_transfer(node, now);
+  bool order_transfer(std::uint8_t node, Time now) override {
+    return std::exchange(was_ordered_, true) || IsaLas::order_transfer(node, now);
   }
   bool was_ordered_ = false;
 };

@@ -1,11 +1,15 @@
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
-#include "conformance/fieldbus_dll/isa_las_check_seeded_faults.hpp"
+
+#include <algorithm>
 
 #include "conformance/fieldbus_dll/isa_check_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_frame_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/isa_las_check_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_las_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_reply_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/isa_request_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_token_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/link_seeded_faults.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -162,6 +166,94 @@ std::vector<IsaRow> isa_frame_rows() {
   };
 }
 
+std::vector<IsaRow> isa_request_rows() {
+  using namespace isa_seeded_faults;
+  using link_seeded_faults::AcceptsPriority;
+  return {
+      {"unknown_requests_taken", "", "refuses no request that it does not know",
+       mutant<link_seeded_faults::UnknownRequestsTaken<IsaDle>>()},
+      {"orders_taken", "", "takes the order of a link master, though it is none",
+       mutant<link_seeded_faults::OrdersTaken<IsaDle>>()},
+      {"unknown_service_is_unit_data", "", "sends a DU for a service that there is not",
+       mutant<SubmitsOtherwise>(+[](IsaRequest& request, const IsaRules&) {
+         if (request.service > IsaService::reply_data) request.service = IsaService::unit_data;
+       })},
+      {"priority_zero_accepted", "", "does not refuse data of priority 0",
+       mutant<AcceptsPriority<IsaDle, IsaRequest>>(0U)},
+      {"priority_four_accepted", "", "does not refuse data of priority 4",
+       mutant<AcceptsPriority<IsaDle, IsaRequest>>(4U)},
+      {"data_of_cd_left_out", "", "takes a CD with data, and sends it without",
+       mutant<SubmitsOtherwise>(+[](IsaRequest& request, const IsaRules&) {
+         if (request.service == IsaService::compel) request.data.clear();
+       })},
+      {"compels_everybody", "", "takes a CD to everybody, and sends it to the first address",
+       mutant<SubmitsOtherwise>(+[](IsaRequest& request, const IsaRules& rules) {
+         if (request.service == IsaService::compel && request.destination == rules.everybody)
+           request.destination = rules.first_address;
+       })},
+      {"tells_128_octets", "", "reports the first 128 octets of data to its user",
+       mutant<TellsOtherwise>(
+           +[](IsaDlpdu& dlpdu) { dlpdu.data.resize(std::min<std::size_t>(dlpdu.data.size(), 128)); })},
+      {"too_long_is_heard", "", "delivers data that are longer than their priority carries",
+       mutant<TooLongIsHeard>()},
+      {"empty_data_left_out", "", "does not deliver data of no octets", mutant<EmptyDataLeftOut>()},
+      {"urgent_waits_for_a_token", "", "sends what is urgent and came during a token behind the rest",
+       mutant<UrgentWaitsForAToken>()},
+      {"waits_for_urgent_data", "", "asks for urgent data, whatever the priority of the CD",
+       mutant<WaitsForDataOf>(Priority::urgent)},
+      {"waits_for_any_data", "", "asks for time-available data, whatever the priority of the CD",
+       mutant<WaitsForDataOf>(Priority::time_available)},
+      {"anything_ends_the_wait", "", "replies with less urgent data that come within V(FD)",
+       mutant<AnythingEndsTheWait>()},
+  };
+}
+
+std::vector<IsaRow> isa_setting_rows() {
+  using fieldbus_dll::IsaDle;
+  return {
+      {"lengths_of_the_usual_link", "", "knows the usual longest data, whatever its link's are",
+       with_rules<IsaDle>(
+           [](IsaRules& rules) { rules.link.most_data = fieldbus_dll::LinkRules{}.most_data; })},
+      {"one_length_for_all", "", "takes the greatest of the longest data for that of each priority",
+       with_rules<IsaDle>([](IsaRules& rules) {
+         rules.link.most_data.fill(*std::ranges::max_element(rules.link.most_data));
+       })},
+      {"preamble_of_the_usual_link", "", "sends an octet of preamble, whatever its link has",
+       with_rules<IsaDle>([](IsaRules& rules) { rules.link.preamble_octets = 1; })},
+      {"everybody_of_the_usual_link", "", "knows the usual address of everybody, whatever its link's is",
+       with_rules<IsaDle>([](IsaRules& rules) { rules.everybody = IsaRules{}.everybody; })},
+      {"first_address_of_the_usual_link", "", "knows the usual first address, whatever its link's is",
+       with_rules<IsaDle>([](IsaRules& rules) { rules.first_address = IsaRules{}.first_address; })},
+      {"last_address_of_the_usual_link", "", "knows the usual last address, whatever its link's is",
+       with_rules<IsaDle>([](IsaRules& rules) { rules.last_address = IsaRules{}.last_address; })},
+      {"first_address_is_none", "", "takes the first address for none",
+       with_rules<IsaDle>([](IsaRules& rules) { ++rules.first_address; })},
+      {"last_address_is_none", "", "takes the last address for none",
+       with_rules<IsaDle>([](IsaRules& rules) { --rules.last_address; })},
+      {"impossible_rules_taken", "", "starts with a V(MID) that cannot be",
+       mutant<link_seeded_faults::ImpossibleRulesTaken<IsaDle>>()},
+  };
+}
+
+std::vector<IsaRow> isa_reception_rows() {
+  using fieldbus_dll::IsaDle;
+  using namespace link_seeded_faults;
+  return {
+      {"deaf_to_long_frames", "", "receives no frame of more than 128 octets",
+       mutant<DeafToLongFrames<IsaDle>>()},
+      {"bits_counted_on", "", "counts bits on when a start delimiter cuts an octet off",
+       mutant<BitsCountedOn<IsaDle>>()},
+      {"silence_from_the_delimiter", "", "counts silence from the end delimiter, whatever follows",
+       mutant<SilenceFromTheDelimiter<IsaDle>>()},
+      {"last_of_a_transmission", "", "takes the last frame of a transmission only",
+       mutant<LastOfATransmission<IsaDle>>()},
+      {"deaf_behind_71_minutes", "", "receives nothing more after 2^32 microseconds",
+       mutant<DeafBehind71Minutes<IsaDle>>()},
+      {"levels_are_half_bits", "", "takes each level for half a bit, however fine they are",
+       mutant<LevelsAreHalfBits<IsaDle>>()},
+  };
+}
+
 std::vector<IsaRow> isa_check_rows() {
   using namespace isa_seeded_faults;
   return IsaMutants::for_check({
@@ -249,8 +341,9 @@ std::vector<IsaRow> isa_las_check_rows() {
 }  // namespace
 
 const IsaMutants& isa_dle_mutants() {
-  static const IsaMutants table("isa_dle", {isa_token_rows, isa_duration_rows, isa_reply_rows,
-                                            isa_timers_rows, isa_frame_rows, isa_check_rows});
+  static const IsaMutants table(
+      "isa_dle", {isa_token_rows, isa_duration_rows, isa_reply_rows, isa_timers_rows, isa_frame_rows,
+                  isa_check_rows, isa_request_rows, isa_setting_rows, isa_reception_rows});
   return table;
 }
 

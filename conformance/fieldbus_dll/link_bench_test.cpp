@@ -58,7 +58,7 @@ class IsaBabbler final : public Babbler<fieldbus_dll::IsaDevice> {
  public:
   using Babbler::Babbler;
   void wire(segment::Port& place, fieldbus_dll::IsaUser&) override { line().wire(place); }
-  void start(kernel::Time) override {}
+  bool start(kernel::Time) override { return true; }
   bool submit(const fieldbus_dll::IsaRequest&, kernel::Time) override { return true; }
 };
 

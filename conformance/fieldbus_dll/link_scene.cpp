@@ -130,6 +130,31 @@ LinkStep serves() {
           [](LinkScene& scene) { scene.expect_serves(); }};
 }
 
+LinkStep preambles(unsigned octets) {
+  return expected<LinkScene>(
+      fmt::format("each of its DLPDUs has {} octets of preamble", octets), [octets](LinkScene& scene) {
+        scene.judge.expect(!scene.link.driven().empty(), "frame_length_wrong", "a DLPDU", "none");
+        for (const DrivenDlpdu& one : scene.link.driven()) {
+          const kernel::Duration length = one.end - one.begin;
+          const kernel::Duration right = scene.link.frame(one.octets.size());
+          scene.judge.expect(
+              length + kLinkRounding >= right && length <= right + kLinkRounding, "frame_length_wrong", [&] {
+                return Mismatch{{fmt::format("{}: {} octets of preamble", kernel::describe(right), octets)},
+                                fmt::format("{} of {}", one.text(), kernel::describe(length)),
+                                one.begin};
+              });
+        }
+      });
+}
+
+LinkStep long_silence() {
+  return expected<LinkScene>("nothing is sent while 72 minutes pass", [](LinkScene& scene) {
+    const kernel::Time end = scene.link.now() + 72 * 60 * kernel::kSecond;
+    scene.judge.expect(!scene.link.next_begins(end), "speaks_unasked", "silence: nothing asks for it",
+                       "the station spoke");
+  });
+}
+
 LinkStep submit_longest() {
   return {
       "the user submits an urgent DLSDU of 64 octets, a normal one of 128, a time-available one of 256, "

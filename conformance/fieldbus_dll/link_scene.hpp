@@ -67,6 +67,10 @@ LinkStep silence(std::string reason, std::string why);
 LinkStep says(std::string what, std::string reason, std::size_t least = 1);
 // A longer token is used for all that waits, and for what is submitted then: `does_not_recover`.
 LinkStep serves();
+// All that it has driven had so many octets of preamble, which is what the link has.
+LinkStep preambles(unsigned octets);
+// Nothing is sent for 72 minutes, which are more than 2^32 microseconds.
+LinkStep long_silence();
 // The longest DLSDU of the priority of the round is accepted, and none that is longer.
 LinkStep submit_longest();
 

@@ -7,6 +7,11 @@
 #include "harness/line/frame_check.hpp"
 
 namespace fieldproof::conformance {
+namespace {
+
+constexpr std::size_t kHalfBitsOfOctet = 16;
+
+}  // namespace
 
 line::Levels half_bits_with_other_check(const Octets& octets, unsigned kind) {
   const line::FrameCheckParameters right = line::frame_check_named("CRC-16/PROFIBUS");
@@ -49,6 +54,36 @@ line::Waveform jittered(LinkBench& bench, const line::Levels& half_bits) {
 
 line::Waveform clocked(const LinkBench& bench, const line::Levels& half_bits, std::int64_t per_mille) {
   return {bench.now(), 2 * bench.link().bit_rate * per_mille / 1'000, half_bits};
+}
+
+line::Levels frame_of_link(const LinkBench& bench, const Octets& octets) {
+  return half_bits_of_frame(with_frame_check(octets), bench.link().preamble_octets);
+}
+
+line::Levels begun_within_an_octet(const LinkBench& bench, const Octets& octets, std::size_t bits) {
+  const line::Levels whole = frame_of_link(bench, octets);
+  const std::size_t preamble = bench.link().preamble_octets * kHalfBitsOfOctet;
+  line::Levels levels;
+  levels.append(whole, 0, preamble + 2 * kHalfBitsOfOctet + 2 * bits);
+  levels.append(whole, preamble, whole.size() - preamble);
+  return levels;
+}
+
+line::Levels with_tail(const LinkBench& bench, const Octets& octets, std::size_t tail) {
+  line::Levels levels = frame_of_link(bench, octets);
+  for (std::size_t n = 0; n < tail * kHalfBitsOfOctet / 2; ++n) levels.append(n % 3 == 0 ? 0b10 : 0b01, 2);
+  return levels;
+}
+
+line::Waveform with_pulse(LinkBench& bench, const Octets& octets) {
+  constexpr std::int64_t kLevelsUnderBursts = 4'000'000;  // a second
+  const line::Levels half_bits = frame_of_link(bench, octets);
+  const auto fine = static_cast<std::size_t>(kLevelsUnderBursts / (2 * bench.link().bit_rate));
+  line::Waveform wave{bench.now(), kLevelsUnderBursts, {}};
+  for (std::size_t n = 0; n < half_bits.size(); ++n) wave.levels.append_fill(half_bits[n], fine);
+  const std::size_t half_bit = 2 * kHalfBitsOfOctet + bench.random().below(half_bits.size() / 2);
+  wave.levels.flip(half_bit * fine + fine / 4);
+  return wave;
 }
 
 SequenceWord link_received() {

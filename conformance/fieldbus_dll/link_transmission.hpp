@@ -6,7 +6,7 @@
 #include "conformance/sequence.hpp"
 
 // How a frame can look on its line: with the check of another kind of line, with a long preamble, by another
-// clock, with edges that are off.
+// clock, with edges that are off; and what else can be in its transmission.
 namespace fieldproof::conformance {
 
 // Without complement, beginning with 0, both, reflected, CCITT, CCITT with complement, with its octets
@@ -18,6 +18,15 @@ line::Levels half_bits_with_other_check(const Octets& octets, unsigned kind);
 line::Waveform jittered(LinkBench& bench, const line::Levels& half_bits);
 // At so many per mille of the bit rate.
 line::Waveform clocked(const LinkBench& bench, const line::Levels& half_bits, std::int64_t per_mille);
+
+// Octets with their check, as this link has frames.
+line::Levels frame_of_link(const LinkBench& bench, const Octets& octets);
+// The frame, in front of which it ends after an octet and so many bits, by its own start delimiter.
+line::Levels begun_within_an_octet(const LinkBench& bench, const Octets& octets, std::size_t bits);
+// So many octets of symbols that are data, and no frame, behind the frame.
+line::Levels with_tail(const LinkBench& bench, const Octets& octets, std::size_t tail);
+// At 4000000 levels/s, with a pulse of one, half-way between an edge and the middle of a half bit.
+line::Waveform with_pulse(LinkBench& bench, const Octets& octets);
 
 // ---- words of sequences ----
 

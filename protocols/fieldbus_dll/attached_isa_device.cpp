@@ -35,8 +35,8 @@ bool AttachedIsaDevice::submit(const IsaRequest& wanted, kernel::Time now) {
   return link_.ask(octets, now);
 }
 
-void AttachedIsaDevice::order_transfer(std::uint8_t node, kernel::Time now) {
-  link_.ask({static_cast<std::uint8_t>(IsaAsk::order_transfer), node}, now);
+bool AttachedIsaDevice::order_transfer(std::uint8_t node, kernel::Time now) {
+  return link_.ask({static_cast<std::uint8_t>(IsaAsk::order_transfer), node}, now);
 }
 
 void AttachedIsaDevice::send(unsigned port, kernel::Time start, std::span<const std::uint16_t> characters) {
@@ -88,19 +88,21 @@ bool ServedIsaDevice::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
 }
 
 void ServedIsaDevice::set_power(bool is_on, kernel::Time now) {
-  act(now, [&] { is_on ? station().start(now) : station().stop(now); });
+  act(now, [&] {
+    if (!is_on) {
+      station().stop(now);
+    } else if (!station().start(now)) {
+      refuse(now);
+    }
+  });
 }
 
 bool ServedIsaDevice::asked(const Octets& wanted, kernel::Time now) {
   constexpr std::size_t kHead = 4;
-  if (wanted[0] == static_cast<std::uint8_t>(IsaAsk::order_transfer) && wanted.size() == 2) {
-    station().order_transfer(wanted[1], now);
-    return true;
-  }
-  const bool is_submit = wanted[0] == static_cast<std::uint8_t>(IsaAsk::submit) && wanted.size() >= kHead &&
-                         wanted[1] <= static_cast<std::uint8_t>(IsaService::reply_data) && wanted[2] >= 1 &&
-                         wanted[2] <= 3;
-  if (!is_submit) return false;
+  if (wanted[0] == static_cast<std::uint8_t>(IsaAsk::order_transfer) && wanted.size() == 2)
+    return station().order_transfer(wanted[1], now);
+  if (wanted[0] != static_cast<std::uint8_t>(IsaAsk::submit) || wanted.size() < kHead)
+    return station().ask(wanted, now);
   const auto data = std::span(wanted).subspan(kHead);
   return station().submit({static_cast<IsaService>(wanted[1]), static_cast<Priority>(wanted[2]), wanted[3],
                            Octets(data.begin(), data.end())},

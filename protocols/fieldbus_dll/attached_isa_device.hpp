@@ -32,10 +32,13 @@ class AttachedIsaDevice final : public IsaDevice, private iut::Bench {
                     const std::string& case_id, std::uint64_t seed);
 
   void wire(segment::Port& line, IsaUser& user) override;
-  void start(kernel::Time now) override { link_.start(now); }
+  bool start(kernel::Time now) override { return link_.start(now); }
   void stop(kernel::Time now) override { link_.stop(now); }
   bool submit(const IsaRequest& request, kernel::Time now) override;
-  void order_transfer(std::uint8_t node, kernel::Time now) override;
+  bool order_transfer(std::uint8_t node, kernel::Time now) override;
+  bool ask(const std::vector<std::uint8_t>& request, kernel::Time now) override {
+    return link_.ask(request, now);
+  }
 
   void receive(segment::PortIndex, const line::Waveform& reception) override { link_.receive(reception); }
   void on_activity(segment::PortIndex, bool begins, kernel::Time now) override {

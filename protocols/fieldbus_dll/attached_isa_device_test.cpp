@@ -83,10 +83,11 @@ class AttachedIsaDeviceTest : public testing::Test, private IsaUser {
 
 TEST_F(AttachedIsaDeviceTest, RequestsOfTheUserAreOctetsAtItsPort) {
   EXPECT_TRUE(station_.submit({IsaService::reply_data, Priority::urgent, 0x22, {0xAA}}, kernel::kStart));
-  station_.order_transfer(0x11, kernel::kStart);
+  EXPECT_TRUE(station_.order_transfer(0x11, kernel::kStart));
+  EXPECT_TRUE(station_.ask({7, 1}, kernel::kStart));
   std::vector<std::uint16_t> octets;
   for (const ActingDevice::Heard& heard : device_.heard) octets.push_back(heard.character.data);
-  EXPECT_THAT(octets, ElementsAre(1, 2, 3, 0x22, 0xAA, 3, 0x11));
+  EXPECT_THAT(octets, ElementsAre(1, 2, 3, 0x22, 0xAA, 3, 0x11, 7, 1));
 }
 
 TEST_F(AttachedIsaDeviceTest, TellsAndAsksItsUser) {

@@ -55,7 +55,7 @@ void FfStation::wire(segment::Port& line, FfUser& user) {
 }
 
 bool FfStation::start(kernel::Time now) {
-  if (impossible(rules())) return false;
+  if (are_impossible()) return false;
   set_link_time(0, now);
   enter(FfState::offline);
   return true;

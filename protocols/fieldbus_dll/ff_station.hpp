@@ -76,6 +76,7 @@ class FfStation : public FfDevice {
   kernel::Duration octet_times(std::int64_t count) const { return octets(rules().link, count); }
 
   // ---- decisions ----
+  virtual bool are_impossible() const { return impossible(rules()).has_value(); }
   virtual std::vector<Arrived> heard_in(const line::Waveform& reception) { return line_.receive(reception); }
   virtual std::optional<FfDlpdu> understood(std::span<const std::uint8_t> octets) const;
   virtual bool is_mine(std::uint8_t node) const { return node == configuration_.node; }

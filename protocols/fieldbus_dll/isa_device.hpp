@@ -86,17 +86,20 @@ struct IsaConfiguration {
 class IsaDevice : public segment::Station {
  public:
   virtual void wire(segment::Port& line, IsaUser& user) = 0;
-  // After what has been submitted in the same priority. False: more data than the priority carries, any with
-  // a CD, or an address that is none; nothing is kept of it.
+  // After what has been submitted in the same priority. False: a service or priority that is none, more data
+  // than the priority carries, any with a CD, or an address that is none; nothing is kept of it.
   virtual bool submit(const IsaRequest& request, kernel::Time now) = 0;
 
   // The supply comes; a station that was never stopped has it. Of a link master: the schedule begins now,
-  // where it begins as the scheduler.
-  virtual void start(kernel::Time now) = 0;
+  // where it begins as the scheduler. False: the rules are impossible, and nothing will be sent.
+  virtual bool start(kernel::Time now) = 0;
   // The supply fails: what it knew is gone, and it neither hears nor sends before the next start.
   virtual void stop(kernel::Time now) = 0;
-  // Hands the link to this link master, with a TL, as soon as no token is delegated.
-  virtual void order_transfer(std::uint8_t /*node*/, kernel::Time /*now*/) {}
+  // Of a link master: hands the link to this one, with a TL, as soon as no token is delegated. False: it is
+  // none.
+  virtual bool order_transfer(std::uint8_t /*node*/, kernel::Time /*now*/) { return false; }
+  // Octets that mean none of these. False: it is refused.
+  virtual bool ask(const std::vector<std::uint8_t>& /*request*/, kernel::Time /*now*/) { return false; }
 };
 
 }  // namespace fieldproof::fieldbus_dll

@@ -39,8 +39,9 @@ void IsaDle::wire(segment::Port& line, IsaUser& user) {
   user_ = &user;
 }
 
-void IsaDle::start(kernel::Time) {
-  is_stopped_ = false;
+bool IsaDle::start(kernel::Time) {
+  is_stopped_ = are_impossible();
+  return !is_stopped_;
 }
 
 void IsaDle::stop(kernel::Time) {
@@ -54,6 +55,9 @@ void IsaDle::stop(kernel::Time) {
 }
 
 bool IsaDle::submit(const IsaRequest& request, kernel::Time) {
+  if (request.service > IsaService::reply_data || request.priority < Priority::time_available ||
+      request.priority > Priority::urgent)
+    return false;
   const bool is_address =
       request.service == IsaService::reply_data ||
       (request.destination >= rules().first_address && request.destination <= rules().last_address) ||

@@ -30,7 +30,7 @@ class IsaDle : public IsaDevice {
   explicit IsaDle(const IsaConfiguration& configuration);
 
   void wire(segment::Port& line, IsaUser& user) override;
-  void start(kernel::Time now) override;
+  bool start(kernel::Time now) override;
   void stop(kernel::Time now) override;
   bool submit(const IsaRequest& request, kernel::Time now) override;
 
@@ -89,6 +89,7 @@ class IsaDle : public IsaDevice {
   virtual bool waits_for_user(Priority least, kernel::Time now) { return user_->is_reply_coming(least, now); }
   virtual bool is_expected_reply(const IsaDlpdu& dlpdu) const;
   virtual bool is_too_long(const IsaRequest& request) const;
+  virtual bool are_impossible() const { return impossible(rules()).has_value(); }
   virtual void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place);
 
   // ---- actions ----

@@ -170,6 +170,25 @@ TEST_F(IsaDleTest, ACdThatShouldCarryDataIsRefused) {
   EXPECT_NE(link_.heard().find("EE"), std::string::npos);
 }
 
+TEST_F(IsaDleTest, AServiceOrPriorityThatThereIsNotIsRefused) {
+  for (const unsigned priority : {0U, 4U})
+    EXPECT_FALSE(
+        dle_.submit({IsaService::unit_data, static_cast<Priority>(priority), kPeer, {1}}, link_.now()));
+  EXPECT_FALSE(dle_.submit({static_cast<IsaService>(3), Priority::normal, kPeer, {1}}, link_.now()));
+  EXPECT_FALSE(dle_.order_transfer(kPeer, link_.now()));
+  EXPECT_FALSE(dle_.ask({7, 1}, link_.now()));
+}
+
+TEST_F(IsaDleTest, WithImpossibleRulesItDoesNotStart) {
+  IsaRules rules;
+  rules.link.inter_pdu_delay_octets = 24;
+  EXPECT_EQ(impossible(rules), std::nullopt);
+  EXPECT_TRUE(IsaDle({.rules = rules, .address = kNode}).start(kernel::kStart));
+  rules.link.inter_pdu_delay_octets = 25;
+  EXPECT_EQ(impossible(rules), "inter_pdu_delay_octets is 25, and may be 0 to 24");
+  EXPECT_FALSE(IsaDle({.rules = rules, .address = kNode}).start(kernel::kStart));
+}
+
 TEST_F(IsaDleTest, WhatIsNoDlpduIsAsIfNothingWere) {
   link_.say(
       {.type = IsaType::ee, .destination = 0xFF, .source = kPeer});  // an address that an EE cannot have

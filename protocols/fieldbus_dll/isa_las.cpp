@@ -6,12 +6,13 @@ namespace fieldproof::fieldbus_dll {
 
 IsaLas::IsaLas(const IsaConfiguration& configuration) : IsaDle(configuration) {}
 
-void IsaLas::start(kernel::Time now) {
-  IsaDle::start(now);
-  if (!configuration().begins_as_scheduler) return;
+bool IsaLas::start(kernel::Time now) {
+  if (!IsaDle::start(now)) return false;
+  if (!configuration().begins_as_scheduler) return true;
   begin_ = now;
   next_ = 0;
   enter_las(LasState::scheduling);
+  return true;
 }
 
 void IsaLas::stop(kernel::Time now) {
@@ -23,8 +24,9 @@ void IsaLas::stop(kernel::Time now) {
   heir_.reset();
 }
 
-void IsaLas::order_transfer(std::uint8_t node, kernel::Time) {
+bool IsaLas::order_transfer(std::uint8_t node, kernel::Time) {
   if (state_ != LasState::standby) ordered_heir_ = node;
+  return true;
 }
 
 bool IsaLas::submit(const IsaRequest& request, kernel::Time now) {

@@ -28,9 +28,9 @@ class IsaLas : public IsaDle {
  public:
   explicit IsaLas(const IsaConfiguration& configuration);
 
-  void start(kernel::Time now) override;
+  bool start(kernel::Time now) override;
   void stop(kernel::Time now) override;
-  void order_transfer(std::uint8_t node, kernel::Time now) override;
+  bool order_transfer(std::uint8_t node, kernel::Time now) override;
   bool submit(const IsaRequest& request, kernel::Time now) override;
 
   void on_activity(segment::PortIndex port, bool begins, kernel::Time now) override;

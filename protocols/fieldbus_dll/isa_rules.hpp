@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
 
 #include "protocols/fieldbus_dll/link_rules.hpp"
 
@@ -39,5 +41,8 @@ struct IsaRules {
 
   friend bool operator==(const IsaRules&, const IsaRules&) = default;
 };
+
+// A sentence about the first number outside of the range of its row, as for FF-P.
+std::optional<std::string> impossible(const IsaRules& rules);
 
 }  // namespace fieldproof::fieldbus_dll

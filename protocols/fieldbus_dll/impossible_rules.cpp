@@ -1,5 +1,3 @@
-#include "protocols/fieldbus_dll/ff_rules.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,14 +13,13 @@ std::optional<std::string> outside(std::string_view name, std::int64_t value, co
   return fmt::format("{} is {}, and may be {} to {}", name, value, range.least, range.most);
 }
 
-}  // namespace
-
-std::optional<std::string> impossible(const FfRules& rules) {
+template <typename Rules>
+std::optional<std::string> first_impossible(const field::Table<Rules>& table, const Rules& rules) {
   const LinkRules& link = rules.link;
   const std::int64_t answer =
       std::int64_t{link.response_delay_slots} * link.slot_time_octets - link.slot_time_octets;
   std::optional<std::string> sentence;
-  field::walk(kFfRulesTable, &rules, [&](const field::Leaf& leaf) {
+  field::walk(table, &rules, [&](const field::Leaf& leaf) {
     if (sentence || leaf.row.kind == field::Kind::list) return;
     field::Range range = leaf.row.about.range;
     if (leaf.name == field::name_of<&LinkRules::inter_pdu_delay_octets>())
@@ -30,6 +27,16 @@ std::optional<std::string> impossible(const FfRules& rules) {
     sentence = outside(leaf.name, leaf.number(), range);
   });
   return sentence;
+}
+
+}  // namespace
+
+std::optional<std::string> impossible(const FfRules& rules) {
+  return first_impossible(kFfRulesTable, rules);
+}
+
+std::optional<std::string> impossible(const IsaRules& rules) {
+  return first_impossible(kIsaRulesTable, rules);
 }
 
 }  // namespace fieldproof::fieldbus_dll
