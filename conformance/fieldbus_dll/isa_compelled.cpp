@@ -127,20 +127,20 @@ std::vector<IsaCase> isa_compelled_cases() {
                {{},
                 {offer(normal), cd(urgent), replied(0, "lower_priority_sent"), over, offer(urgent),
                  cd(normal), replied(2, "data_wrong"), over, cd(normal), replied(1, "data_wrong"), over}}),
-      on_chart(
-          must_case("fieldbus_dll/isa_dle/compelled/its_priority_is_what_is_waited_for", "ISA-23",
-                    "A station waits for data of the priority of the CD.",
-                    own("what is worked out is asked of item 16 + the priority of the CD"),
-                    {{"waits_for_urgent_data", "no_reply"}, {"waits_for_any_data", "no_reply"}}, {forming}),
-          {{},
-           {repeat({9, 9}, {IsaStep{"the user works on data of a priority alone; a CD of each priority, "
-                                    "each with each in turn",
-                                    "silence where they are the same, else an empty DT",
-                                    [](IsaScene& scene) {
-                                      compel_beside_what_is_worked_out(scene);
-                                      expect_reply_unless_worked_out(scene);
-                                    }}}),
-            serves()}}),
+      on_chart(must_case("fieldbus_dll/isa_dle/compelled/its_priority_is_what_is_waited_for", "ISA-23",
+                         "A station waits for data of the priority of the CD.",
+                         own("what is worked out is asked of item 16 + the priority of the CD"),
+                         {{"waits_for_urgent_data", "does_not_wait"}, {"waits_for_any_data", "no_reply"}},
+                         {forming}),
+               {{},
+                {repeat({9, 9}, {IsaStep{"the user works on data of a priority alone; a CD of each priority, "
+                                         "each with each in turn",
+                                         "silence where they are the same, else an empty DT",
+                                         [](IsaScene& scene) {
+                                           compel_beside_what_is_worked_out(scene);
+                                           expect_reply_unless_worked_out(scene);
+                                         }}}),
+                 serves()}}),
       on_chart(
           must_case("fieldbus_dll/isa_dle/compelled/less_urgent_data_within_fd_are_kept", "ISA-25",
                     "A reply has at least the priority of the CD, also within V(FD).",

@@ -194,8 +194,8 @@ std::vector<IsaRow> isa_request_rows() {
       {"tells_128_octets", "", "reports the first 128 octets of data to its user",
        mutant<TellsOtherwise>(
            +[](IsaDlpdu& dlpdu) { dlpdu.data.resize(std::min<std::size_t>(dlpdu.data.size(), 128)); })},
-      {"too_long_is_heard", "", "delivers data that are longer than their priority carries",
-       mutant<TooLongIsHeard>()},
+      {"too_long_is_cut", "", "delivers the first octets of data that are longer than their priority carries",
+       mutant<TooLongIsCut>()},
       {"empty_data_left_out", "", "does not deliver data of no octets", mutant<EmptyDataLeftOut>()},
       {"urgent_waits_for_a_token", "", "sends what is urgent and came during a token behind the rest",
        mutant<UrgentWaitsForAToken>()},

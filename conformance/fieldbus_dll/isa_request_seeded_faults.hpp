@@ -25,12 +25,15 @@ class SubmitsOtherwise : public IsaDle {
   Change change_;
 };
 
-class TooLongIsHeard : public IsaDle {
+class TooLongIsCut : public IsaDle {
   using IsaDle::IsaDle;
   std::optional<IsaDlpdu> understood(Heard octets) const override {
     fieldbus_dll::IsaRules loose = rules();
     loose.link.most_data.fill(300);
-    return fieldbus_dll::isa_dlpdu_of(octets, loose);
+    auto dlpdu = fieldbus_dll::isa_dlpdu_of(octets, loose);
+    if (dlpdu && (dlpdu->type == IsaType::du || dlpdu->type == IsaType::dt))
+      dlpdu->data.resize(std::min(dlpdu->data.size(), most_data(rules().link, dlpdu->priority)));
+    return dlpdu;
   }
 };
 

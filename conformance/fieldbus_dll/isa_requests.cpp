@@ -163,7 +163,7 @@ std::vector<IsaCase> isa_request_cases() {
                          memory("the longest DLSDU of each priority"),
                          {{"deaf_to_long_frames", "longest_not_delivered"},
                           {"tells_128_octets", "told_otherwise"},
-                          {"too_long_is_heard", "invalid_data_delivered"}}),
+                          {"too_long_is_cut", "invalid_data_delivered"}}),
                {{3, 3}, lengths()}),
       on_chart(
           must_case(
