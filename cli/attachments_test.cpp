@@ -223,10 +223,17 @@ TEST_F(Attachments, NodeInCPassesAtTheLowestBitRateWithAcknowledge) {
   const std::set<std::string> at_other_rates{"loss/afterwards_the_node_serves_as_before",
                                              "loss/commands_to_it_are_signs_of_life",
                                              "loss/limit_of_8_milliseconds",
+                                             "loss/of_12_ms_leaves_answers_whole",
+                                             "loss/of_5_ms_leaves_answers_whole",
+                                             "loss/spoilt_commands_are_no_signs_of_life",
                                              "loss/what_others_are_sent_delays_nothing",
                                              "loss/writes_that_are_answered_are_signs_of_life",
+                                             "loss/wrong_parity_is_no_sign_of_life",
                                              "settings/serves_1000000_bits_per_second",
-                                             "settings/serves_1200_bits_per_second"};
+                                             "settings/serves_1200_bits_per_second",
+                                             "settings/serves_187500_bits_per_second",
+                                             "settings/serves_62500_bits_per_second",
+                                             "settings/serves_9600_bits_per_second"};
   if (kernel::kIsSanitized)
     EXPECT_THAT(at_other_rates, testing::IsSupersetOf(not_applicable));
   else

@@ -42,10 +42,12 @@ void judge_end(NodeBench& bench, CaseJudge& judge) {
 
 const std::vector<NodeCase>& node_cases() {
   static const std::vector<NodeCase> cases = [] {
-    static constexpr std::array kChapters{node_write_cases,    node_read_cases,     node_address_cases,
-                                          node_check_cases,    node_framing_cases,  node_timing_cases,
-                                          node_line_cases,     node_power_cases,    node_loss_cases,
-                                          node_settings_cases, node_immunity_cases, node_resonance_cases};
+    // What is basic comes first: who answers wrong is told so of a read, not of one board.
+    static constexpr std::array kChapters{node_write_cases,    node_read_cases,      node_one_board_cases,
+                                          node_address_cases,  node_check_cases,     node_framing_cases,
+                                          node_timing_cases,   node_line_cases,      node_power_cases,
+                                          node_loss_cases,     node_meanwhile_cases, node_settings_cases,
+                                          node_immunity_cases, node_resonance_cases};
     auto all = cases_of<NodeCase>(kChapters, node_details());
     all.push_back(canary());
     return all;

@@ -20,6 +20,7 @@ void judge_end(NodeBench& bench, CaseJudge& judge);
 
 // The chapters, each in its own file.
 std::vector<NodeCase> node_write_cases();
+std::vector<NodeCase> node_one_board_cases();
 std::vector<NodeCase> node_read_cases();
 std::vector<NodeCase> node_address_cases();
 std::vector<NodeCase> node_check_cases();
@@ -28,6 +29,7 @@ std::vector<NodeCase> node_timing_cases();
 std::vector<NodeCase> node_line_cases();
 std::vector<NodeCase> node_power_cases();
 std::vector<NodeCase> node_loss_cases();
+std::vector<NodeCase> node_meanwhile_cases();
 std::vector<NodeCase> node_settings_cases();
 std::vector<NodeCase> node_immunity_cases();
 std::vector<NodeCase> node_resonance_cases();

@@ -5,6 +5,7 @@
 #include "conformance/valve_bus/node_command_seeded_faults.hpp"
 #include "conformance/valve_bus/node_framing_seeded_faults.hpp"
 #include "conformance/valve_bus/node_loss_seeded_faults.hpp"
+#include "conformance/valve_bus/node_meanwhile_seeded_faults.hpp"
 #include "conformance/valve_bus/node_power_seeded_faults.hpp"
 #include "conformance/valve_bus/node_sequence_seeded_faults.hpp"
 #include "conformance/valve_bus/node_terminal_seeded_faults.hpp"
@@ -234,6 +235,35 @@ std::vector<NodeRow> node_loss_rows() {
   };
 }
 
+std::vector<NodeRow> node_meanwhile_rows() {
+  using namespace node_seeded_faults;
+  using Why = KeptAliveBySpoiltFrames::Why;
+  return {
+      {"loss_drops_the_frame", "", "forgets the frame within which its valves go off without a host",
+       mutant<LossDropsTheFrame>()},
+      {"loss_cuts_answers", "", "ends an answer within which the time without a host is over",
+       mutant<LossCutsAnswers>()},
+      {"loss_cancels_answers", "", "sends no answer that waits when the time without a host is over",
+       mutant<LossCancelsAnswers>()},
+      {"kept_alive_by_long_frames", "", "takes a command with a sixth octet for a sign of life",
+       mutant<KeptAliveBySpoiltFrames>(Why::octet_more)},
+      {"kept_alive_by_short_frames", "", "takes a command without its check for a sign of life",
+       mutant<KeptAliveBySpoiltFrames>(Why::octet_less)},
+      {"kept_alive_by_frames_with_gaps", "", "takes a command with a gap in it for a sign of life",
+       mutant<KeptAliveBySpoiltFrames>(Why::gap)},
+      {"kept_alive_by_wrong_characters", "",
+       "takes a command with a wrong parity or without a stop bit for a sign of life",
+       mutant<KeptAliveBySpoiltFrames>(Why::wrong_character)},
+      {"takes_what_goes_on_behind_answers", "",
+       "takes for a frame what follows without a gap on what it did not hear while it drove",
+       mutant<TakesWhatGoesOnBehindAnswers>()},
+      {"answers_undefined_commands", "", "answers undefined commands where it answers writes",
+       mutant<AnswersUndefinedCommands>()},
+      {"turns_round_in_1900_us", "", "answers 1.9 ms after it is sure of a command, at each bit rate",
+       mutant<TurnsRoundIn1900Microseconds>()},
+  };
+}
+
 std::vector<NodeRow> node_power_rows() {
   using namespace node_seeded_faults;
   return {
@@ -294,8 +324,9 @@ std::vector<NodeRow> node_sequence_rows() {
 
 const NodeMutants& node_mutants() {
   static const NodeMutants table(
-      "node", {node_check_rows, node_command_rows, node_process_rows, node_answer_rows, node_frame_rows,
-               node_character_rows, node_loss_rows, node_power_rows, node_sequence_rows});
+      "node",
+      {node_check_rows, node_command_rows, node_process_rows, node_answer_rows, node_frame_rows,
+       node_character_rows, node_loss_rows, node_meanwhile_rows, node_power_rows, node_sequence_rows});
   return table;
 }
 

@@ -155,7 +155,8 @@ std::vector<NodeCase> node_power_cases() {
             stimulus("two writes and a read", send_without_power),
             ignored("acts_without_power", "it has no supply"),
             stimulus("power comes; 200 ms of silence", power_up),
-            ignored("speaks_at_power_up", "nobody asked it"), serves()}}),
+            no_valve_moved("remembers_over_power_loss", "no write has come since"),
+            silent("speaks_at_power_up", "nobody asked it"), serves()}}),
       on_chart(
           {.id = "valve_bus/node/power/settings_hold_after_each_power_up",
            .purpose = "RN-33",

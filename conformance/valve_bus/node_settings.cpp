@@ -92,6 +92,15 @@ NodeStep write_of(unsigned data0, unsigned data1) {
                           [=](NodeScene& scene) { return scene.write(data0, data1); });
 }
 
+constexpr std::array<unsigned, 4> kUndefined{2, 3, 0x80, 0xFF};
+
+std::vector<std::uint8_t> for_next_node(NodeScene& scene) {
+  auto frame = scene.moving_write();
+  frame.front() ^= 1U;
+  frame.back() ^= 1U;
+  return frame;
+}
+
 struct NodeSettingRow {
   std::string name;
   std::string what;
@@ -119,6 +128,25 @@ NodeCase settings_case(NodeSettingRow row) {
         taken(),
         read(),
         answered(),
+        sent("a command 2, 3, 80h or FFh",
+             [](NodeScene& scene) { return scene.command(kUndefined.at(scene.round % kUndefined.size())); }),
+        ignored("acts_on_undefined_command", "nobody has defined it"),
+        sent("a write for another node", for_next_node),
+        ignored("acts_on_foreign_id", "it is for another node"),
+        sent("a write with an octet more",
+             [](NodeScene& scene) {
+               auto frame = scene.moving_write();
+               frame.push_back(0);
+               return frame;
+             }),
+        ignored("acts_on_long_frame", "it has six octets"),
+        sent("a write without its check",
+             [](NodeScene& scene) {
+               auto frame = scene.moving_write();
+               frame.pop_back();
+               return frame;
+             }),
+        ignored("acts_on_short_frame", "it has four octets"),
         write_of(0x00, 0x80),
         taken(),
         write_with_gap(1.4),
@@ -166,6 +194,21 @@ std::vector<NodeCase> node_settings_cases() {
             {{"gaps_of_one_bit_rate", "write_not_taken"}},
             for_bit_rate(kFastest),
             {.bit_rate = kFastest, .loss_limit = kernel::Duration{}}},
+           {"9600_bits_per_second",
+            "at 9600 bit/s",
+            {{"turns_round_in_1900_us", "answer_too_late"}},
+            for_bit_rate(9'600),
+            {.bit_rate = 9'600, .loss_limit = kernel::Duration{}}},
+           {"62500_bits_per_second",
+            "at 62.5 kbit/s",
+            {{"turns_round_in_1900_us", "answer_too_late"}},
+            for_bit_rate(62'500),
+            {.bit_rate = 62'500, .loss_limit = kernel::Duration{}}},
+           {"187500_bits_per_second",
+            "at 187.5 kbit/s",
+            {{"gaps_of_one_bit_rate", "takes_long_gap"}},
+            for_bit_rate(187'500),
+            {.bit_rate = 187'500, .loss_limit = kernel::Duration{}}},
            {"characters_with_parity",
             "with characters P1",
             {{"parity_inverted", "write_not_taken"},
@@ -180,9 +223,16 @@ std::vector<NodeCase> node_settings_cases() {
             {.characters = CharacterProfile::eight_bits}},
            {"writes_with_answers",
             "that answers writes",
-            {{"answers_writes", "no_answer"}, {"answers_wrong_writes", "acts_on_wrong_check"}},
+            {{"answers_writes", "no_answer"},
+             {"answers_wrong_writes", "acts_on_wrong_check"},
+             {"answers_undefined_commands", "acts_on_undefined_command"}},
             for_answer("answers_writes", true),
             {.answers_writes = true}},
+           {"one_board",
+            "with one board",
+            {{"one_board_drives_both", "valves_wrong"}},
+            for_answer("boards", std::int64_t{1}),
+            {.boards = 1}},
            {"one_board_that_answers_writes",
             "with one board that answers writes",
             {{"acknowledges_what_it_drives", "answer_data_wrong"}},

@@ -43,6 +43,12 @@ std::vector<NodeCase> node_write_cases() {
           {{20, 5'000},
            {write(), sent("the same write again", [](NodeScene& scene) { return scene.frame; }),
             valves_stand("valves_wrong"), no_valve_moved("valves_glitch", "they stand as the write says")}}),
+  };
+}
+
+std::vector<NodeCase> node_one_board_cases() {
+  using namespace node_chart;
+  return {
       on_chart({.id = "valve_bus/node/write/one_board_takes_the_first_octet",
                 .purpose = "RN-37",
                 .requirement = "A node with one drive board takes DATA0 only, answers 0 in DATA1, and its "

@@ -31,7 +31,8 @@ const std::vector<PartialSource>& node_details() {
       {own("2 ms after the delimiter"), {"valves_too_late"}},
       {own("together means within 1 us"), {"valves_one_by_one"}},
       {own("a write is not answered"), {"write_answered"}},
-      {own("silence of 3.5 characters ends a frame, whatever came before it"), {"does_not_recover"}},
+      {own("after 3.5 characters of silence, or power-up, a node serves whatever came before"),
+       {"does_not_recover"}},
   };
   return details;
 }
