@@ -7,8 +7,8 @@
 
 // Local nodes that differ from the reference in one decision each; node_mutants.cpp names and describes
 // them. A decision that is a number is changed in the rules there, without a class. They lie by theme in
-// node_command_seeded_faults.hpp, node_terminal_, node_answer_, node_framing_, node_loss_ and
-// node_power_seeded_faults.hpp, and in node_sequence_seeded_faults.hpp; here is what all of these name.
+// node_command_seeded_faults.hpp, node_terminal_, node_answer_, node_framing_, node_loss_, node_meanwhile_
+// and node_power_seeded_faults.hpp, and in node_sequence_seeded_faults.hpp; here is what all of these name.
 namespace fieldproof::conformance::node_seeded_faults {
 
 using kernel::Duration;
