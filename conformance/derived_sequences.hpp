@@ -11,9 +11,10 @@
 #include "conformance/sequence.hpp"
 #include "harness/kernel/random.hpp"
 
-// Sequences that are derived from the vocabulary of a role instead of being listed or drawn: each number of
-// each word at its boundaries, each unit of each transmission spoilt, each setting at its ends, each three
-// words in each order, the same many times; and, at last, any sequences as `check` draws them. A new word, number or setting gets all of it by its row.
+// Sequences that are derived from the vocabulary of a role instead of being listed: each number of each word
+// at its boundaries, each unit of each transmission spoilt, each setting at its ends, each three words in
+// each order, the same many times; and, at last, any sequences as `check` draws them. A new word, number or
+// setting gets all of it by its row.
 //
 // Whatever a sequence is about stands between others: in front of it what brings the station into a state,
 // and a word that leaves something behind; after it one of each word, in their order or the other, which

@@ -115,9 +115,10 @@ Outcome Suite::run_sequence(const SequenceRole& role, const Sequence& sequence, 
 
 judge::CaseResult Suite::run_derived(const RoleRow& row, DerivedKind kind, RunningCase& run) const {
   const SequenceVocabulary vocabulary = this->vocabulary(*row.sequences, run.setup());
-  const std::size_t most = run.is_on_real_line()
-                               ? kDerivedOnRealLine
-                               : run.setup().sequences.value_or(derived_count(kind, run.setup().volume));
+  const std::size_t most =
+      run.is_on_real_line()
+          ? kDerivedOnRealLine
+          : run.setup().sequences.value_or(derived_count(kind, run.setup().volume, row.sequences->cost));
   const DerivedSequences derived =
       derived_sequences(kind, vocabulary, most, kernel::Random(run.setup().seed).split("derived"));
   return run_derived_case({.test_case = run.test_case(),

@@ -145,6 +145,8 @@ struct SequenceRole {
   TestCase test_case;  // "PROTOCOL/ROLE/check/follows_the_model"
   SequenceVocabulary vocabulary;
   std::vector<DerivedCatch> derived_catches{};
+  // How many times as long as usual a sequence takes: a quick run has so many fewer derived ones.
+  std::size_t cost = 1;
 };
 
 }  // namespace fieldproof::conformance

@@ -7,6 +7,7 @@
 #include "harness/field/pics.hpp"
 #include "harness/kernel/error.hpp"
 #include "protocols/interbus/cycle_fields.hpp"
+#include "protocols/interbus/network.hpp"
 #include "protocols/interbus/slave_settings.hpp"
 
 namespace fieldproof::conformance {

@@ -4,7 +4,12 @@
 
 #include "harness/judge/pics.hpp"
 #include "protocols/interbus/device.hpp"
-#include "protocols/interbus/network.hpp"
+#include "protocols/interbus/rules.hpp"
+
+namespace fieldproof::interbus {
+struct RingPlace;
+struct StationDescription;
+}  // namespace fieldproof::interbus
 
 // What is declared of a slave and of a master in a PICS.
 namespace fieldproof::conformance {

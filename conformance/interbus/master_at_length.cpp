@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 
 #include "conformance/interbus/compared_master.hpp"
-#include "conformance/interbus/declarations.hpp"
 #include "conformance/interbus/master_scene.hpp"
-#include "conformance/interbus/slave_cases.hpp"
-#include "protocols/interbus/network.hpp"
+#include "conformance/interbus/master_sequence.hpp"
 
 // A master with more of everything: each of twelve stations, more words than an octet counts, more bad cycles
 // in a row than four bits count, orders that come twice, and rings that change.
@@ -129,7 +127,7 @@ MasterStep twelve_stations() {
 }  // namespace
 
 std::vector<MasterCase> master_cases_at_length() {
-  const judge::Reference from_page = sources::from_memory("what a master does with its ring and its orders");
+  const judge::Reference from_page = master_sequence_role().test_case.reference;
   return {
       compared("each_of_twelve_stations",
                "Each of twelve stations has messages, marks a cycle, becomes another one, is cut off, and is "

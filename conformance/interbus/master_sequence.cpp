@@ -47,6 +47,8 @@ std::string state_text(std::span<const std::int64_t> values) {
   return text;
 }
 
+constexpr std::size_t kCost = 3;  // a ring is recognised in each sequence
+
 constexpr std::array kStatesOfOrders{interbus::MasterState::ready, interbus::MasterState::identification,
                                      interbus::MasterState::locating, interbus::MasterState::bus_stop};
 
@@ -198,7 +200,9 @@ const SequenceRole& master_sequence_role() {
        {DerivedKind::words, {"wrong_segment", "report_wrong"}},
        {DerivedKind::states, {"copied_one_cycle_late", "report_wrong"}},
        {DerivedKind::repetitions, {"stop_one_late", "cycle_unasked"}},
-       {DerivedKind::settings, {"telegrams_without_gap", "cycle_time_wrong"}}}};
+       {DerivedKind::settings, {"telegrams_without_gap", "cycle_time_wrong"}},
+       {DerivedKind::drawn, {"wrong_segment", "report_wrong"}}},
+      kCost};
   return role;
 }
 

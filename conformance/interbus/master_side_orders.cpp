@@ -2,7 +2,6 @@
 
 #include "conformance/interbus/master_side.hpp"
 #include "protocols/interbus/master.hpp"
-#include "protocols/interbus/network.hpp"
 
 // What an application orders of a master in other states than run, and what must come of it.
 namespace fieldproof::conformance {

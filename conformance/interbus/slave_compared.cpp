@@ -420,8 +420,8 @@ std::vector<SlaveCase> compared_as_usual() {
                }),
       compared("many_cycles", "270 data cycles and 270 ID cycles," + after,
                {{"loses_every_200th_cycle", "outputs_wrong"}}, each_of({{many_cycles, 2}})),
-      compared("drawn_sequences", "Sequences of all words at random.", {{"delays_four_bits", "passed_at_another_time"}},
-               drawn)};
+      compared("drawn_sequences", "Sequences of all words at random.",
+               {{"delays_four_bits", "passed_at_another_time"}}, drawn)};
 }
 
 std::vector<SlaveCase> compared_elsewhere() {

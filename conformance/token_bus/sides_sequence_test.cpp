@@ -66,10 +66,9 @@ TEST(SidesSequence, NeitherTheReferenceNorAQuickOneIsAccused) {
   for (const SidesRole& role : kSidesRoles) {
     for (const char* uri : {"ref", kQuick}) {
       const SequenceSearchResult result = searched_sides(role, uri, 300);
-      EXPECT_FALSE(result.found.has_value())
-          << role.name << " " << uri << ": " << result.found->first.reason
-          << result.found->first.findings.front().actual
-          << sequence_json(result.found->smallest, role.role().vocabulary);
+      EXPECT_FALSE(result.found.has_value()) << role.name << " " << uri << ": " << result.found->first.reason
+                                             << result.found->first.findings.front().actual
+                                             << sequence_json(result.found->smallest, role.role().vocabulary);
       EXPECT_EQ(result.passed, kernel::kIsSanitized ? 60U : 300U) << role.name << " " << uri;
     }
   }
