@@ -465,8 +465,8 @@ FfNeeds ff_device_sequence_needs() {
     for (FfAddress n = 0; n < kMorePublished; ++n) device.published.push_back(kMoreOfDevice + n);
     for (FfAddress n = 0; n < kMoreSubscribed; ++n) device.subscribed.push_back(kMoreOfOthers + n);
     // Longer than a buffer of most links.
-    constexpr std::size_t kUrgentData = 100;
-    device.rules.link.most_data[2] = kUrgentData;
+    constexpr std::size_t kMostUrgent = 100;
+    device.rules.link.most_data[2] = kMostUrgent;
   }};
 }
 

@@ -224,7 +224,8 @@ void MasterSide::stop(bool is_disturbed) {
 
 // Until it has nothing more to do with a bus that it has given up.
 void MasterSide::settle() {
-  for (int n = 0; n < kMostIdles; ++n) {
+  const kernel::Time latest = bench_.now() + longest_recognition();
+  for (int n = 0; n < kMostIdles || bench_.now() < latest; ++n) {
     const std::uint64_t before = bench_.ring().cycle_count();
     bench_.run_for(idle());
     if (bench_.ring().cycle_count() == before && is_idle()) return;

@@ -54,10 +54,17 @@ void MasterSide::give(EarlyOrder order) {
   }
 }
 
-// With the silence before it.
+// With the silence before it. Who does not know the ring may wait for an answer as long as the longest one
+// takes, as often as stops the bus.
 kernel::Duration MasterSide::longest_recognition() const {
   const interbus::Rules& rules = bench_.rules();
-  return kernel::kSecond + 2 * (rules.silence_limit + 2 * rules.silence_tolerance);
+  const kernel::Duration half_bit = kernel::levels_duration(1, 2 * rules.bit_rate);
+  const kernel::Duration stations =
+      rules.max_stations * (rules.forward_delay_half_bits + rules.return_delay_half_bits) * half_bit;
+  const kernel::Duration cable =
+      kernel::Duration{2 * static_cast<std::int64_t>(rules.max_cable_m) * rules.cable_delay_ps_per_m};
+  return kernel::kSecond + 2 * (rules.silence_limit + 2 * rules.silence_tolerance) +
+         rules.stop_after_bad_cycles * (stations + cable);
 }
 
 // No data cycle with outputs 0 is owed: it ends at once.

@@ -151,10 +151,15 @@ constexpr std::array<std::string_view, 3> kFixedOfMaster{"status_*", "control_*"
 // shortest has one, which shows the ring that a cycle is over.
 constexpr std::int64_t kShortestPause = kernel::Duration{100 * kernel::kMicrosecond}.count();
 constexpr std::int64_t kLongestPause = kernel::Duration{20 * kernel::kMillisecond}.count();
-constexpr std::array kBoundsOfMaster{SettingBound{"cycle_time", {0, kLongestPause}},
+// Status telegrams of faster ones are more than an implementation may drive in a case.
+constexpr std::int64_t kFastest = 10'000'000;
+constexpr std::array kBoundsOfMaster{SettingBound{"bit_rate", {1'000, kFastest}},
+                                     SettingBound{"cycle_time", {0, kLongestPause}},
                                      SettingBound{"software_time", {kShortestPause, kLongestPause}},
                                      SettingBound{"cable_delay_ps_per_m", {0, 100'000}},
                                      SettingBound{"max_cable_m", {0, 100'000}},
+                                     SettingBound{"forward_delay_half_bits", {0, 100}},
+                                     SettingBound{"return_delay_half_bits", {0, 100}},
                                      SettingBound{"stop_after_bad_cycles", {1, 20}},
                                      SettingBound{"quality_bad_cycles", {1, 100}},
                                      SettingBound{"quality_window_cycles", {1, 100}}};
