@@ -110,7 +110,7 @@ std::vector<NodeCase> node_power_cases() {
   const auto with_switched_power = for_item("power_can_be_switched", true, declared_node(),
                                             "the bench cannot switch the supply of the node");
   using namespace node_chart;
-  constexpr unsigned kPlaces = valve_bus::kCommandOctets + 1;
+  constexpr unsigned kCommandPlaces = valve_bus::kCommandOctets + 1;
   return {
       on_chart({.id = "valve_bus/node/power/valves_hold_without_a_host",
                 .purpose = "RN-32",
@@ -190,7 +190,7 @@ std::vector<NodeCase> node_power_cases() {
            .catches = {{"keeps_octets_over_power_loss", "remembers_over_power_loss"},
                        {"keeps_valves_over_power_loss", "remembers_over_power_loss"}},
            .not_applicable = with_switched_power},
-          {{kPlaces, kPlaces},
+          {{kCommandPlaces, kCommandPlaces},
            {sent("a write that switches all valves on",
                  [](NodeScene& scene) { return scene.write(0xFF, 0xFF); }),
             stimulus("the first 0 to 5 octets of a write, and power goes", lose_power),
