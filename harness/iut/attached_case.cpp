@@ -12,7 +12,7 @@ namespace {
 
 constexpr kernel::Duration kFarthestAhead = 3600 * kernel::kSecond;
 constexpr std::int64_t kMostLines = 3;         // that an implementation drives at a time: those of a slave
-constexpr std::int64_t kMostActs = 1'000'000;  // of a case, beside one for each microsecond
+constexpr std::int64_t kMostActs = 3'000'000;  // of a case, beside one for each microsecond
 constexpr std::int64_t kMostLevels = 100'000'000;  // the same, beside one for each nanosecond
 // Who asks for kMostActions calls within this stands still: they are a nanosecond apart on average.
 constexpr kernel::Duration kStandstill = kMostActions * kernel::kNanosecond;
