@@ -263,7 +263,8 @@ std::vector<TokenCase> token_each_cases() {
                 {joined(), each_too_long(), counted("frames too long", kTooLong, 2), starts_anew(),
                  each_too_long(), counted("frames too long", kTooLong, 2), joined()}}),
   };
-  for (const auto& more : {each_octet_of_long_addresses(), noises()}) all.insert(all.end(), more.begin(), more.end());
+  for (const auto& more : {each_octet_of_long_addresses(), noises()})
+    all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 

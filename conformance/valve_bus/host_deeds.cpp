@@ -116,6 +116,9 @@ void talk_over_refreshes(HostSide& side) {
   side.drain();
   HostBench& bench = side.bench();
   if (!side.pace().has_written() || bench.rules().answers_writes) return;
+  // Who talks as a write ends is heard before the next one where the rest after it is some characters longer
+  // than the silence that ends a frame.
+  if (bench.characters(2) > kernel::kMillisecond) return;
   side.keep_line_busy(bench.rules().refresh * 11 / 10 + 2 * bench.time_out() + bench.characters(10));
 }
 
