@@ -288,6 +288,8 @@ std::vector<PartialSource> host_sequence_details() {
 
 }  // namespace
 
+constexpr std::size_t kCostOfHost = 4;  // refreshes at length, in some
+
 const SequenceRole& host_sequence_role() {
   static const SequenceRole role{
       {.id = "valve_bus/host/check/follows_the_reference",
@@ -307,7 +309,8 @@ const SequenceRole& host_sequence_role() {
        {DerivedKind::states, {"sends_id_100", "indication_wrong"}},
        {DerivedKind::repetitions, {"told_twice", "indication_wrong"}},
        {DerivedKind::settings, {"silence_told_as_data", "indication_wrong"}},
-       {DerivedKind::drawn, {"request_check_without_id", "check_wrong"}}}};
+       {DerivedKind::drawn, {"request_check_without_id", "check_wrong"}}},
+      kCostOfHost};
   return role;
 }
 

@@ -168,7 +168,7 @@ std::vector<SequenceWord> lasting_words() {
        .weight = 3},
       {.word = "polled",
        .meaning = "a write, and so many reads, one of which always waits; each is answered",
-       .numbers = {node(), {"count", 1, 400, 400, kPolled, true}}},
+       .numbers = {node(), {"count", 1, 400, 2, kPolled, true}}},
       {.word = "period",
        .meaning = "two writes to a node, the second so many milliseconds after the first, and so many "
                   "refreshes",
