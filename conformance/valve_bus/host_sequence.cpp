@@ -306,7 +306,7 @@ const SequenceRole& host_sequence_role() {
       {{DerivedKind::values, {"request_check_is_sum", "check_wrong"}},
        {DerivedKind::faults, {"waits_long_behind_errors", "no_request"}},
        {DerivedKind::words, {"request_check_without_id", "check_wrong"}},
-       {DerivedKind::states, {"sends_id_100", "indication_wrong"}},
+       {DerivedKind::states, {"request_check_without_id", "check_wrong"}},
        {DerivedKind::repetitions, {"told_twice", "indication_wrong"}},
        {DerivedKind::settings, {"silence_told_as_data", "indication_wrong"}},
        {DerivedKind::drawn, {"request_check_without_id", "check_wrong"}}},
