@@ -91,6 +91,11 @@ void expect_same_verdict_from_recording(const std::string& id, const std::string
                        id.ends_with("/each_of_twelve_stations") || has_tag(case_of(id), "derived");
   ASSERT_TRUE(is_long || !first.recording.truncated) << id;
   ASSERT_NE(first.recording.devices, nullptr);
+  // A thousand rings that are recognised are more than is kept; `judge` says so.
+  if (first.recording.devices->is_truncated()) {
+    EXPECT_TRUE(has_tag(case_of(id), "derived")) << id;
+    return;
+  }
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) /
                                      ("playback_of_" + role + "_" + std::to_string(getpid()) + ".json");
   std::ofstream(path) << first.recording.devices->text();
