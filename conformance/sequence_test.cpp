@@ -68,7 +68,7 @@ TEST(Sequence, RefusesWhatIsWrongAtItsPlace) {
        "/commands/0/faults/0/unit"},
       {R"({"settings": {"boards": 3}, "commands": []})", "/settings/boards"},
       {R"({"settings": {"slot_time_octets": 8}, "commands": []})", "slot_time_octets"},
-      {R"({"settings": {"address_units": 15}, "commands": []})", "/settings"},
+      {R"({"settings": {"address_units": 16}, "commands": []})", "/settings"},
   };
   for (const BadSequence& one : bad) {
     try {
