@@ -199,9 +199,7 @@ const SequenceRole& master_sequence_role() {
        {DerivedKind::faults, {"stop_bit_ignored", "wrong_cycle_accepted"}},
        {DerivedKind::words, {"wrong_segment", "report_wrong"}},
        {DerivedKind::states, {"copied_one_cycle_late", "report_wrong"}},
-       {DerivedKind::repetitions, {"stop_one_late", "cycle_unasked"}},
-       {DerivedKind::settings, {"telegrams_without_gap", "cycle_time_wrong"}},
-       {DerivedKind::drawn, {"wrong_segment", "report_wrong"}}},
+       {DerivedKind::repetitions, {"stop_one_late", "cycle_unasked"}}},
       kCost};
   return role;
 }
