@@ -211,8 +211,10 @@ class Campaign {
       return test.result.came_up && test.result.criterion >= worst_probe_->result.criterion;
     };
     if (!worst_probe_ || std::ranges::any_of(done_.tests, is_as_bad)) return;
-    if (references_)
-      worst_probe_->reference = run_one(response, with_references(case_of(*worst_probe_))).result;
+    if (references_) {
+      emc::ImmunityResult reference = run_one(response, with_references(case_of(*worst_probe_))).result;
+      if (reference.is_complete) worst_probe_->reference = std::move(reference);
+    }
     done_.tests.push_back(*worst_probe_);
     session_.terminal.print(emc_line(done_.tests.back()));
     if (!folder_.empty()) store(response, done_.tests.back(), done_.tests.size());

@@ -43,7 +43,7 @@ std::string beside_text(const EmcCampaign& campaign) {
   Beside device;
   Beside references;
   for (const EmcTest& test : campaign.tests) {
-    if (!test.reference || !test.result.came_up) continue;
+    if (!test.reference || !test.result.came_up || !test.reference->came_up) continue;
     ++device.tests;
     if (test.result.criterion > test.reference->criterion) ++device.worse;
     if (test.result.criterion < test.reference->criterion) ++device.better;

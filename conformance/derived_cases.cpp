@@ -166,7 +166,8 @@ class DerivedResult {
 
 std::size_t derived_count(DerivedKind kind, Volume volume, std::size_t cost) {
   const auto row = std::ranges::find(kDerivedRows, kind, &DerivedRow::kind);
-  const std::size_t count = volume == Volume::quick ? row->quick / cost : row->full;
+  const std::size_t count =
+      volume == Volume::quick ? std::max(row->quick / cost, kFewestSequences) : row->full;
   // A sanitizer looks at what the code does, not at how often it holds.
   return kernel::kIsSanitized ? std::max(count / kFewerIfSanitized, kFewestSequences) : count;
 }

@@ -14,8 +14,8 @@
 namespace fieldproof::conformance {
 
 inline constexpr std::size_t kDerivedOnRealLine = 10;  // sequences of a case: each lasts as long as it lasts
-// Sequences that a run of this volume takes.
-std::size_t derived_count(DerivedKind kind, Volume volume, std::size_t cost = 1);
+// Sequences that a run of this volume takes of a role whose sequences cost so much (SequenceRole::cost).
+std::size_t derived_count(DerivedKind kind, Volume volume, std::size_t cost);
 
 // Without those of which the vocabulary gives no sequence.
 std::vector<TestCase> derived_cases(const SequenceRole& role);

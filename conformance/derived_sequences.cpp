@@ -38,11 +38,10 @@ namespace {
 
 constexpr std::array<std::size_t, 3> kRepetitions{2, 20, 130};
 constexpr std::size_t kManyRepetitions = 300;
-constexpr std::size_t kOrder = 3;       // words of which all orders occur
-constexpr std::size_t kNewOfWalk = 4;   // words that a walk has beyond those it shares with the one before
-constexpr std::size_t kTourLength = 5;  // commands with a setting
-constexpr std::uint64_t kShorterDrawn = 100;  // the first ones of a seed have few commands
-constexpr std::int64_t kMostChoices = 20;     // of a number: more are a quantity
+constexpr std::size_t kOrder = 3;          // words of which all orders occur
+constexpr std::size_t kNewOfWalk = 4;      // words that a walk has beyond those it shares with the one before
+constexpr std::size_t kTourLength = 5;     // commands with a setting
+constexpr std::int64_t kMostChoices = 20;  // of a number: more are a quantity
 
 void add_once(std::vector<std::int64_t>& values, std::int64_t value) {
   if (std::ranges::find(values, value) == values.end()) values.push_back(value);
@@ -52,7 +51,7 @@ void add_once(std::vector<std::int64_t>& values, std::int64_t value) {
 class Derivation {
  public:
   Derivation(const SequenceVocabulary& vocabulary, kernel::Random random)
-      : vocabulary_(vocabulary), random_(random) {
+      : vocabulary_(vocabulary), random_(random), source_(vocabulary, random.split("drawn").seed()) {
     for (std::size_t word = 0; word < vocabulary.words.size(); ++word) {
       if (vocabulary.words[word].weight == 0) continue;
       words_.push_back(word);
@@ -77,7 +76,7 @@ class Derivation {
         return repetitions();
       case DerivedKind::settings:
         return settings();
-      case DerivedKind::drawn:
+      case DerivedKind::drawn:  // nothing of it is about one thing
         return {};
     }
     return {};
@@ -118,7 +117,7 @@ class Derivation {
       case DerivedKind::settings:
         return two_settings();
       case DerivedKind::drawn:
-        return {};
+        return next_drawn();
     }
     return {};
   }
@@ -410,19 +409,19 @@ class Derivation {
     return {std::move(commands), settings_of(chosen, vocabulary_)};
   }
 
+  Sequence next_drawn() {
+    Sequence next;
+    while (next.commands.empty()) next = source_.draw(next_++);
+    return next;
+  }
+
   const SequenceVocabulary& vocabulary_;
   kernel::Random random_;
+  SequenceSource source_;
+  std::uint64_t next_ = 100;  // of the source: the first ones have few commands
   std::vector<std::size_t> words_;
   std::vector<SequenceCommand> letters_;  // of each word a usual command and another
 };
-
-DerivedSequences drawn_sequences(const SequenceVocabulary& vocabulary, std::size_t most,
-                                 kernel::Random random) {
-  DerivedSequences drawn;
-  const SequenceSource source(vocabulary, random.seed());
-  for (std::size_t n = 0; n < most; ++n) drawn.sequences.push_back(source.draw(kShorterDrawn + n));
-  return drawn;
-}
 
 }  // namespace
 
@@ -456,7 +455,6 @@ bool has_derived(DerivedKind kind, const SequenceVocabulary& vocabulary) {
 
 DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
                                    kernel::Random random) {
-  if (kind == DerivedKind::drawn) return drawn_sequences(vocabulary, most, random);
   Derivation derivation(vocabulary, random.split("of_two"));
   auto singles = derivation.singles(kind);
   DerivedSequences derived{.sequences = {}, .singles = singles.size()};

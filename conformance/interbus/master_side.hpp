@@ -124,7 +124,6 @@ class MasterSide {
   void judge_cycle(const interbus::SeenCycle& sent);
   void judge_inputs(const interbus::SeenCycle& sent, Arrival arrival);
   void judge_counters();
-  void judge_counters_since_entry();
   void judge_silence();
   void judge_line();
   void judge_break();
@@ -152,10 +151,7 @@ class MasterSide {
   bool is_ring_known_ = false;  // it has run on this one since its supply came
   bool is_ring_right_ = true;   // the one that it runs on
   std::vector<std::uint16_t> held_;
-  std::uint64_t data_cycles_ = 0;  // in this run
-  std::uint64_t rejected_ = 0;
-  std::uint64_t id_cycles_ = 0;
-  std::uint64_t rejected_of_all_ = 0;
+  std::uint64_t rejected_data_ = 0;  // cycles, in this run
   interbus::MasterStatus at_entry_;
   MasterBench::FinishedCycle ended_at_entry_{};
   Observations cycles_;

@@ -190,7 +190,7 @@ TEST(MasterStates, every_state_with_every_event) {
     end_row(table);
   }
   // A cell is the state after the event, or the first other state that the cycles led to. Ready, off and
-  // bus_stop have no cycles of their own: ready ends with the first ID cycle of the recognition.
+  // bus_stop have no cycles of their own: ready ends with the first good ID cycle of the recognition.
   const std::string approved = R"(
                 | off           | ready         | identification| run           | locating      | bus_stop
 start           | ready         | ready         | identification| run           | locating      | ready
@@ -198,8 +198,8 @@ stop            | off           | off           | off           | run           
 stop, then cycle| off           | off           | off           | off           | off           | off
 good cycle      | off           | identification| identification| run           | locating      | bus_stop
 good cycles     | off           | identification| run           | run           | bus_stop      | bus_stop
-bad cycle       | off           | identification| identification| run           | locating      | bus_stop
-bad cycles      | off           | identification| bus_stop      | bus_stop      | bus_stop      | bus_stop
+bad cycle       | off           | ready         | identification| run           | locating      | bus_stop
+bad cycles      | off           | ready         | bus_stop      | bus_stop      | bus_stop      | bus_stop
 no return       | off           | ready         | identification| run           | locating      | bus_stop
 never a return  | off           | ready         | bus_stop      | bus_stop      | bus_stop      | bus_stop
 ID requested    | off           | identification| identification| run           | locating      | bus_stop
