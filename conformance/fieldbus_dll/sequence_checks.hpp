@@ -57,7 +57,7 @@ class SequenceChecks {
     for (const Mutant& one : suite().mutants()) {
       if (one.role == role_ && !one.is_for_check) catalogue.push_back(one.name);
     }
-    for (kernel::FewerIfSanitized few(kOneOf); const std::string& name : catalogue) {
+    for (kernel::FewerIfSanitized few(2 * kOneOf); const std::string& name : catalogue) {
       if (few.leaves_out()) continue;
       // Who is outside passes whatever their number.
       const bool is_outside = outside.contains(name);

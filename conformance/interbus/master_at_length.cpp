@@ -82,6 +82,15 @@ Ring with_another(std::size_t station) {
   return ring;
 }
 
+// 1 and 2 hang on the branch of 0, 5 on that of 4: before 3 and 6 in the ring is not what they hang on.
+Ring twelve_with_branches() {
+  Ring ring = twelve_alike();
+  ring.at(1).on_branch = ring.at(5).on_branch = true;
+  ring.at(3).before = 0;
+  ring.at(6).before = 4;
+  return ring;
+}
+
 // It stops at once, and looks for no fault: it has seen which station is another one.
 void expect_no_search(RingScene& scene) {
   const std::uint64_t cycles = scene.bench.ring().cycle_count();
@@ -105,14 +114,16 @@ void exchange_while_stopped(RingScene& scene) {
   const unsigned most = bench.rules().stop_after_bad_cycles;
   for (unsigned n = 0; n < most + 2 && bench.is_in_run(); ++n) bench.run_cycle();
   bench.set_script({});
-  bench.ring().replace_ring(with_another(scene.round));
+  Ring ring = twelve_with_branches();
+  ring.at(scene.round).id_code ^= 0x0040;
+  bench.ring().replace_ring(std::move(ring));
 }
 
 void expect_exchange_located(RingScene& scene) {
   MasterBench& bench = scene.bench;
   bench.run_until([&] { return bench.status().has_fault_location; }, kernel::kSecond);
   const interbus::MasterStatus status = bench.status();
-  const FaultLocation right{static_cast<int>(scene.round) - 1, static_cast<int>(scene.round)};
+  const FaultLocation right{twelve_with_branches().at(scene.round).before, static_cast<int>(scene.round)};
   scene.judge.expect(status.has_fault_location && status.fault_location == right, "exchange_not_located",
                      fmt::format("fault between {} and {}", right.from, right.to),
                      status.has_fault_location ? fmt::format("between {} and {}", status.fault_location.from,
@@ -155,11 +166,12 @@ std::vector<MasterCase> master_cases_at_length() {
       master_case(
           "ring_change/exchanged_station_is_located", "IM-17",
           "After a bus stop the first station that is another one is the place", from_page, {"must"},
-          {{"fault_not_searched", "exchange_not_located"}},
-          {.steps = {twelve_stations(), data_cycles(2),
+          {{"fault_not_searched", "exchange_not_located"}, {"place_in_ring_order", "exchange_not_located"}},
+          {.steps = {in_run("twelve stations with two branches", twelve_with_branches()), data_cycles(2),
                      stimulus<RingScene>("bad cycles stop the bus, and a station is exchanged meanwhile",
                                          exchange_while_stopped),
-                     expected<RingScene>("the place is in front of it", expect_exchange_located)},
+                     expected<RingScene>("the place is between what it hangs on and it",
+                                         expect_exchange_located)},
            .walk = each("each station", kStationsAtLength)})};
 }
 

@@ -17,6 +17,16 @@ struct LooksAtEightStations final : Master {
   }
 };
 
+struct PlaceInRingOrder final : Master {
+  using Master::Master;
+  MasterStatus status() const override {
+    MasterStatus status = Master::status();
+    if (status.has_fault_location && status.fault_location.to > 0)
+      status.fault_location.from = status.fault_location.to - 1;
+    return status;
+  }
+};
+
 struct Writes256Words final : Master {
   using Master::Master;
   void write_output(unsigned word, std::uint16_t value, kernel::Time now) override {

@@ -26,5 +26,6 @@ std::vector<MasterCase> master_skew_cases();
 std::vector<MasterCase> master_immunity_cases();
 std::vector<MasterCase> master_compared_cases();
 std::vector<MasterCase> master_cases_at_length();
+std::vector<MasterCase> master_id_cycle_cases();
 
 }  // namespace fieldproof::conformance

@@ -1,6 +1,7 @@
 #include "conformance/interbus/master_mutants.hpp"
 
 #include "conformance/interbus/master_at_length_seeded_faults.hpp"
+#include "conformance/interbus/master_id_cycle_seeded_faults.hpp"
 #include "conformance/interbus/master_seeded_faults.hpp"
 #include "conformance/interbus/master_sequence_seeded_faults.hpp"
 
@@ -121,8 +122,17 @@ std::vector<MasterMutants::Row> master_rows() {
       {"third_copy_lost", "", "copies two words and no more", mutant<ThirdCopyLost>()},
       {"lone_station_not_placed", "", "finds no place of a fault in a ring of one station",
        mutant<LoneStationNotPlaced>()},
+      {"recognition_stops_late", "", "ends a recognition one bad cycle too late",
+       mutant<RecognitionStopsLate>()},
+      {"recognition_adds_up", "", "adds the bad cycles of a recognition up", mutant<RecognitionAddsUp>()},
+      {"messages_of_recognition_lost", "", "reports no peripheral fault that a recognition has seen",
+       mutant<MessagesOfRecognitionLost>()},
+      {"order_in_id_cycle_lost", "", "takes the ID cycle on the line for the one that is asked for",
+       mutant<OrderInIdCycleLost>()},
       {"looks_at_eight_stations", "", "reports messages of the first eight stations only",
        mutant<LooksAtEightStations>()},
+      {"place_in_ring_order", "", "names the station before in the ring where it is the one it hangs on",
+       mutant<PlaceInRingOrder>()},
       {"writes_256_words", "", "writes the word that eight bits of its number say", mutant<Writes256Words>()},
       {"counts_bad_cycles_in_4_bits", "", "counts bad cycles in a row in four bits",
        with_rules<interbus::Master>(

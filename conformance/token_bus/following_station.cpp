@@ -101,7 +101,7 @@ void FollowingStation::on_activity(segment::PortIndex port, bool begins, kernel:
 }
 
 // Noise in place of a response, noise that is over before a claim is, and several frames at once for a
-// station that holds the token.
+// station that holds the token, or gets it by one of them.
 std::vector<token_bus::Reception> FollowingStation::received(const line::Waveform& wave) const {
   using token_bus::AccessState;
   auto all = TokenStation::received(wave);
@@ -115,8 +115,12 @@ std::vector<token_bus::Reception> FollowingStation::received(const line::Wavefor
   // What comes within the gap before a token is passed may cost it, or shows that the pass has succeeded.
   const bool is_passing = state() == AccessState::check_token_pass || state() == AccessState::pass_token;
   const bool is_within_gap = !is_noise && is_passing && has_pending();
-  if ((is_noise && is_waiting) || is_put_off || is_within_gap ||
-      (all.size() > 1 && state() != AccessState::idle))
+  const auto is_token = [this](const token_bus::Reception& one) {
+    const auto frame = TokenStation::understood(one.octets);
+    return frame && frame->kind == token_bus::FrameKind::token && frame->destination == address();
+  };
+  const bool may_hold = state() != AccessState::idle || std::ranges::any_of(all, is_token);
+  if ((is_noise && is_waiting) || is_put_off || is_within_gap || (all.size() > 1 && may_hold))
     is_doubtful_ = true;
   return all;
 }

@@ -95,7 +95,7 @@ void Master::enter_ready(kernel::Time from) {
 }
 
 void Master::enter_recognition() {
-  state_ = state_ == MasterState::ready ? MasterState::identification : MasterState::locating;
+  if (state_ != MasterState::ready) state_ = MasterState::locating;
   topology_.restart();
   supervision_.clear_consecutive();
   ring_delay_ = {};

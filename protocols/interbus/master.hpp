@@ -142,6 +142,7 @@ class Master : public MasterDevice, private TopologyDecisions {
   bool judge_id_cycle(kernel::Time now);
   void on_run_ids(std::span<const std::uint16_t> ids, kernel::Time now);
   void on_rejected(bool data_cycle, kernel::Time now);
+  void report_messages(std::span<const std::uint16_t> ids);
   void read_messages(std::span<const std::uint16_t> ids);
   void on_recognition_ids(std::span<const std::uint16_t> ids);
   void on_recognition_rejected();

@@ -153,21 +153,27 @@ void Master::on_run_ids(std::span<const std::uint16_t> ids, kernel::Time now) {
   abort_bus(now);
 }
 
-void Master::read_messages(std::span<const std::uint16_t> ids) {
+void Master::report_messages(std::span<const std::uint16_t> ids) {
   peripheral_faults_.clear();
   reconfigurations_.clear();
-  int first_marked = -1;
   for (std::size_t n = 0; n < ids.size(); ++n) {
     const auto index = static_cast<int>(n);
-    const std::uint16_t messages = ids[n] & static_cast<std::uint16_t>(~Topology::kCodeMask);
-    acknowledged_[n] = messages != 0 ? rules().control_acknowledge : std::uint16_t{0};
-    if ((messages & rules().message_check_error) != 0 && first_marked < 0) first_marked = index;
-    if ((messages & rules().message_peripheral_fault) != 0 && reports_peripheral_fault()) {
+    if ((ids[n] & rules().message_peripheral_fault) != 0 && reports_peripheral_fault()) {
       peripheral_faults_.push_back(index);
     }
-    if ((messages & rules().message_reconfiguration) != 0 && reports_reconfiguration()) {
+    if ((ids[n] & rules().message_reconfiguration) != 0 && reports_reconfiguration()) {
       reconfigurations_.push_back(index);
     }
+  }
+}
+
+void Master::read_messages(std::span<const std::uint16_t> ids) {
+  report_messages(ids);
+  int first_marked = -1;
+  for (std::size_t n = 0; n < ids.size(); ++n) {
+    const std::uint16_t messages = ids[n] & static_cast<std::uint16_t>(~Topology::kCodeMask);
+    acknowledged_[n] = messages != 0 ? rules().control_acknowledge : std::uint16_t{0};
+    if ((messages & rules().message_check_error) != 0 && first_marked < 0) first_marked = static_cast<int>(n);
   }
   if (is_fault_open_) fault_location_ = locate(first_marked);
   is_fault_open_ = false;
@@ -176,17 +182,19 @@ void Master::read_messages(std::span<const std::uint16_t> ids) {
 // ---- recognition ----
 
 void Master::on_recognition_ids(std::span<const std::uint16_t> ids) {
-  supervision_.clear_consecutive();
+  if (clears_consecutive()) supervision_.clear_consecutive();
   if (ids.empty() && topology_.stations().empty()) {
     // The line is closed, but there is no station on it.
     if (state_ == MasterState::locating) return on_fault_found(-1);
     return enter_ready(action_at_);
   }
+  if (state_ == MasterState::ready) state_ = MasterState::identification;
   topology_.on_ids(ids);
   if (!topology_.is_finished()) return;
   if (state_ == MasterState::locating) {
     finish_locating();
   } else {
+    report_messages(ids);
     finish_recognition();
   }
 }

@@ -42,12 +42,14 @@ void Topology::fail(std::string sentence) {
 
 void Topology::on_ids(std::span<const std::uint16_t> ids) {
   if (is_finished_) return;
-  const std::size_t most = stations_.size() + (step_ == Step::switching ? 0 : 1);
+  const std::size_t most = stations_.size() + 1;
   if (ids.size() < stations_.size() || ids.size() > most) {
     return fail(fmt::format("the ring has {} stations where {} to {} are possible", ids.size(),
                             stations_.size(), most));
   }
-  if (step_ == Step::switching) {
+  // What is switched on answers one cycle later; at once when this is the same again after a bad cycle, which
+  // the stations had obeyed.
+  if (step_ == Step::switching && ids.size() < most) {
     step_ = Step::observing;
   } else {
     observe(ids);
