@@ -108,6 +108,21 @@ std::vector<ManagerCase> missing_cases() {
                           expect_reported_in_time),
             b_serves(), nothing_reported("report_wrong"), b_serves(), nothing_reported("report_wrong")}}),
       on_chart(
+          manager_must("faults/a_slot_time_is_not_begun_anew", "PST-16",
+                       "The slot time for a start delimiter counts from the first one of the other channel, "
+                       "however many of them come in its transmission.",
+                       "no start delimiter for a slot time", {{"slot_begins_anew", "reported_too_late"}}),
+          {{3, 30},
+           {powered_anew(),
+            does("B alone carries a transmission of five frames",
+                 [](ManagerScene& scene) {
+                   std::string train;
+                   for (int n = 0; n < 4; ++n) train += scene.frame(0, true);
+                   scene.carry({}, {train + scene.frame()});
+                 }),
+            requires_that("that A has no start delimiter is reported within a slot time of the first one",
+                          expect_reported_in_time)}}),
+      on_chart(
           manager_must("faults/of_the_other_channel_too", "",
                        "The channel that is not preferred is watched as well.", "both channels are watched",
                        {{"watches_the_preferred_alone", "report_wrong"}}),
@@ -247,7 +262,7 @@ std::vector<ManagerCase> e_bit_cases() {
       manager_must(
           "faults/the_e_bit_is_no_error", "",
           "A frame with E = 1 counts for nothing: it neither makes a fault nor ends one, nor a row of "
-          "errors.",
+          "errors. Nor does a frame with I = 1 that silence follows make a fault.",
           "what a repeater has noticed", {{"counts_the_e_bit", "reported_without_fault"}}),
       {{2, 20},
        {powered_anew(),
@@ -256,6 +271,14 @@ std::vector<ManagerCase> e_bit_cases() {
             [](ManagerScene& scene) {
               const std::string frame = scene.frame();
               scene.carry({frame.substr(0, frame.size() - 1) + "1"}, {frame});
+              scene.expect_events({}, "reported_without_fault");
+            },
+            true),
+        carries(
+            "both carry a frame, that of A with I = 1 and silence after it",
+            [](ManagerScene& scene) {
+              const std::string frame = scene.frame();
+              scene.carry({frame.substr(0, frame.size() - 2) + "10"}, {frame});
               scene.expect_events({}, "reported_without_fault");
             },
             true),

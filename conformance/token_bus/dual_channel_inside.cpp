@@ -171,6 +171,20 @@ std::vector<ManagerCase> length_cases() {
                nothing_reported("reported_without_fault"),
            },
            {powered_anew()}}),
+      on_chart(manager_must("inside/an_abort_blocks_nothing", "",
+                            "A channel that has carried an abort alone does not keep the other one out.",
+                            "what has ended is over", {{"an_abort_stays_selected", "wrong_channel"}}),
+               {{4, 20},
+                {powered_anew(),
+                 does("B alone carries an abort, then A alone a frame",
+                      [](ManagerScene& scene) {
+                        scene.carry({}, {indicated_as(frame_text({}))});
+                        scene.carry({scene.frame()}, {});
+                      }),
+                 requires_that("the frame of A is indicated from its start delimiter on",
+                               [](ManagerScene& scene) {
+                                 scene.expect_from_delimiter_of(Channel::a, "wrong_channel");
+                               })}}),
   };
 }
 

@@ -51,6 +51,26 @@ inline Channel a_when_it_is_clean(const ChannelSelection& selection, Channel sel
   return selection.has_fault(Channel::a) ? selected : Channel::a;
 }
 
+class SlotBeginsAnew final : public ChannelSelection {
+ public:
+  explicit SlotBeginsAnew(const ChannelManagerConfiguration& of) : ChannelSelection(of.rules, of.channels) {}
+
+ private:
+  bool begins_slot_anew() const override { return true; }
+};
+
+class AnAbortStaysSelected final : public ChannelSelection {
+ public:
+  explicit AnAbortStaysSelected(const ChannelManagerConfiguration& of)
+      : ChannelSelection(of.rules, of.channels) {}
+
+ private:
+  bool keeps_an_abort() const override { return true; }
+  bool is_new_transmission(Channel channel, kernel::Time when) const override {
+    return is_within_transmission(*serving()) && ChannelSelection::is_new_transmission(channel, when);
+  }
+};
+
 class TakesLateCopies final : public ChannelSelection {
  public:
   explicit TakesLateCopies(const ChannelManagerConfiguration& of) : ChannelSelection(of.rules, of.channels) {}

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "conformance/token_bus/dual_channel_scene.hpp"
+#include "conformance/token_bus/dual_channel_words.hpp"
 
 // What is a delimiter, and what is not; what ends a transmission, and what only stands beside one.
 namespace fieldproof::conformance {
@@ -89,12 +90,6 @@ ManagerCase end_delimiter_case() {
 }
 
 // ---- codes ----
-
-std::string with_other_codes(std::string text) {
-  constexpr std::array<std::pair<char, char>, 3> kOther{{{'N', 'm'}, {'B', 'b'}, {'S', 's'}}};
-  for (const auto& [usual, other] : kOther) std::ranges::replace(text, usual, other);
-  return text;
-}
 
 ManagerCase codes_case() {
   return on_chart(

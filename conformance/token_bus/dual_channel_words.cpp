@@ -301,8 +301,9 @@ std::string train_of(TrainKind kind, const token_bus::ChannelManagerConfiguratio
   }
 }
 
+// Silence has its usual code: whether another one is driven on is the manager's choice.
 std::string with_other_codes(std::string text) {
-  constexpr std::array<std::pair<char, char>, 3> kOther{{{'N', 'm'}, {'B', 'b'}, {'S', 's'}}};
+  constexpr std::array<std::pair<char, char>, 2> kOther{{{'N', 'm'}, {'B', 'b'}}};
   for (const auto& [usual, other] : kOther) std::ranges::replace(text, usual, other);
   return text;
 }

@@ -171,6 +171,52 @@ void receive_around_command(TranslatorScene& scene) {
                      "line_lost", [&] { return difference(right, seen); });
 }
 
+// What decides lies within a command: the start delimiter that locks the phase, the last end delimiter, and
+// the silence in front of a frame in the other phase.
+// An answer may come late, and hides what it stands for: what must be indicated comes after that.
+void lock_within_command(TranslatorScene& scene) {
+  const std::string after = std::string(scene.bench.configuration().answer_symbols + std::size_t{90}, '0') +
+                            "01101001" + std::string(40, '1');
+  scene.exchange(std::string(24, 'i'), side_bits_of(encoded("PPPPPPPP" + start_delimiter_text() + after)));
+  const std::string right = after.substr(scene.bench.configuration().answer_symbols + std::size_t{24});
+  const std::string seen = scene.indicated();
+  scene.judge.expect(seen.ends_with(right), "lock_lost", [&] { return difference(right, seen); });
+}
+void end_within_command(TranslatorScene& scene) {
+  constexpr std::size_t kSure = 40;
+  const std::size_t ones = scene.bench.configuration().answer_symbols + std::size_t{90};
+  const std::string frame = frame_text(scene.octets);
+  scene.exchange(std::string(frame.size() - 4, 'S') + "iiii",
+                 side_bits_of(encoded(frame + std::string(ones, '1'))));
+  const std::string seen = scene.indicated();
+  const std::size_t shown = seen.size() - 1 - std::min(seen.find_last_not_of('1'), seen.size() - 1);
+  const std::size_t right = ones - scene.bench.configuration().rules.blanking_symbols;
+  scene.judge.expect(shown >= kSure && shown <= right + 2, "end_missed",
+                     fmt::format("{} to {} ones after the blanking", kSure, right), fmt::format("{}", shown));
+}
+void fall_silent_within_command(TranslatorScene& scene) {
+  constexpr std::size_t kSilence = 8;
+  const std::string fragment = "PPPPPPPP" + start_delimiter_text() + "0101";
+  const std::string frame = frame_text(scene.octets);
+  SideBits bits = side_bits_of(encoded(fragment));
+  bits.insert(bits.end(), 2 * kSilence + 1, SideBit{'I', false, false});
+  const SideBits later =
+      side_bits_of(encoded(std::string(scene.bench.configuration().answer_symbols, 'P') + frame));
+  bits.insert(bits.end(), later.begin(), later.end());
+  scene.exchange(std::string(fragment.size() - 2, 'S') + std::string(kSilence + 4, 'i'), bits);
+  const std::string right = frame.substr(frame.find('N'));
+  const std::string seen = scene.indicated();
+  scene.judge.expect(seen.ends_with(right), "frame_not_found", [&] { return difference(right, seen); });
+}
+void receive_through_command(TranslatorScene& scene) {
+  scene.rest();
+  lock_within_command(scene);
+  scene.rest();
+  end_within_command(scene);
+  scene.rest();
+  fall_silent_within_command(scene);
+}
+
 }  // namespace
 
 std::vector<TranslatorCase> translator_command_cases() {
@@ -228,6 +274,18 @@ std::vector<TranslatorCase> translator_command_cases() {
           {{24, 48},
            {{"a frame, in which a command of one to three symbols is given", "its begin and its rest",
              receive_around_command},
+            pause()},
+           {on_line()}}),
+      on_chart(
+          translator_must("management/what_decides_lies_within_a_command", "PST-14",
+                          "In management mode no symbol is indicated, and the receiver works on: a start "
+                          "delimiter holds the phase, a last end delimiter begins the blanking, and a "
+                          "silence ends what was before.",
+                          own("what is received is followed all the same"),
+                          {{"deaf_in_management_mode", "lock_lost"}}),
+          {{2, 20},
+           {{"a command over a start delimiter, over an end delimiter, and over a silence",
+             "the right symbols after it", receive_through_command},
             pause()},
            {on_line()}}),
   };

@@ -20,6 +20,7 @@ struct MaskRow {
   std::string script;
   bool is_from_the_middle;
   std::size_t every = 1;  // bit
+  std::size_t first = 0;
 };
 constexpr std::size_t kLast = 40;
 constexpr std::size_t kLead = 16;  // symbols, the preamble and start delimiter of what is received
@@ -36,7 +37,9 @@ const std::vector<MaskRow>& mask_rows() {
       {"throughout two transmissions, the second of which begins in the mask of the first",
        sent(kLast) + "SSSSS" + sent(kLast), true},
       {"after a transmission of one symbol", std::string(kLast - 1, 'S') + "P", false},
-      {"in the first bit of each symbol after it", sent(kLast), false, 2}};
+      {"in the first bit of each symbol after it", sent(kLast), false, 2},
+      {"in the second bit of each symbol after it", sent(kLast), false, 2, 1},
+      {"after it, where a command ends it", sent(kLast) + "i", false}};
   return rows;
 }
 
@@ -46,12 +49,13 @@ std::string lead() {
 
 // Ones, and errors in them.
 SideBits with_errors(TranslatorScene& scene, bool is_from_the_middle, std::size_t script,
-                     std::size_t every = 1) {
+                     std::size_t every = 1, std::size_t first = 0) {
   const TranslatorConfiguration& one = scene.bench.configuration();
   const std::size_t begin = is_from_the_middle ? kLast / 2 : kLast + one.delay_symbols;
   const std::size_t end = script + one.delay_symbols + one.error_mask_symbols + kLead;
   SideBits bits = side_bits_of(encoded(lead() + std::string(end - kLead, '1')));
-  for (std::size_t n = 2 * begin; n < bits.size() - 2 * std::size_t{4}; n += every) bits[n].has_error = true;
+  for (std::size_t n = 2 * begin + first; n < bits.size() - 2 * std::size_t{4}; n += every)
+    bits[n].has_error = true;
   return bits;
 }
 
@@ -92,7 +96,7 @@ void expect_masked(TranslatorScene& scene, const SideBits& bits, std::string_vie
 
 void receive_errors(TranslatorScene& scene) {
   const MaskRow& row = mask_rows().at(scene.round % mask_rows().size());
-  const SideBits bits = with_errors(scene, row.is_from_the_middle, row.script.size(), row.every);
+  const SideBits bits = with_errors(scene, row.is_from_the_middle, row.script.size(), row.every, row.first);
   scene.exchange(row.script, bits);
   scene.judge.expect(!scene.sent().empty(), "nothing_sent", "a preamble", "nothing");
   expect_masked(scene, bits, "mask_wrong");

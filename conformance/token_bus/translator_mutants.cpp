@@ -113,6 +113,7 @@ std::vector<TranslatorMutant> blanking_rows() {
       {"errors_masked_while_it_sends", "", "indicates no collision of its own",
        mutant<ErrorsMaskedOtherwise>(true)},
       {"deaf_while_it_sends", "", "receives nothing while it sends", mutant<DeafWhileItSends>()},
+      {"deaf_in_management_mode", "", "receives nothing in management mode", mutant<DeafInManagementMode>()},
   };
 }
 

@@ -43,6 +43,7 @@ const std::vector<PhaseRow>& hunting_rows() {
       {"a signal error, two zeros, and a bit", "x0" + encoded("00") + slipped, "B00" + ones(16)},
       {"a zero, a signal error, two zeros, and a bit", encoded("0") + "x0" + encoded("00") + slipped,
        "0B00" + ones(16)},
+      {"a one, bad_signal, a one, two zeros, and a bit", encoded("1B100") + slipped, "1B100" + ones(16)},
       {"one zero", encoded("0") + preamble_bits(16), "0" + ones(16)},
       {"a zero, a bad_signal and a zero", encoded("0B01") + preamble_bits(4), "0B01" + ones(4)},
       {"zeros and ones in turn", encoded(alternating(4)) + preamble_bits(4), alternating(4) + ones(4)},

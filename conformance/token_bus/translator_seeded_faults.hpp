@@ -369,6 +369,11 @@ class DeafWhileItSends final : public Translator {
   }
 };
 
+class DeafInManagementMode final : public Translator {
+  using Translator::Translator;
+  bool works_in_management_mode() const override { return false; }
+};
+
 class LineLeaksIntoLoopback final : public Translator {
   using Translator::Translator;
   bool takes_line(bool, bool) const override { return true; }

@@ -22,8 +22,8 @@ constexpr std::array<std::int64_t, 6> kCommandLengths{1, 2, 4, 24, 64, 300};
 constexpr std::array<std::string_view, 9> kCodes{"P", "p", "1", "0", "NN", "nN", "S", "s", "NS"};
 constexpr std::int64_t kRows = static_cast<std::int64_t>(TranslatorRow::command_in_a_frame);
 constexpr std::int64_t kJabbers = 4;
-constexpr std::int64_t kMaskRows = 8;
-constexpr std::int64_t kHuntingRows = 18;
+constexpr std::int64_t kMaskRows = 10;
+constexpr std::int64_t kHuntingRows = 19;
 constexpr std::int64_t kPhaseRows = 55;
 
 // ---- the vocabulary ----

@@ -117,7 +117,8 @@ typedef struct fieldproof_implementation {
   fieldproof_time (*receive)(void* self, unsigned port, const fieldproof_character* characters,
                              unsigned count, fieldproof_time now);
   /* With FIELDPROOF_LEVELS: a transmission, and its end as `now`; the role says whether it is told then or
-   * when it begins. Returns when on_time is wanted. May be null otherwise. */
+   * when it begins. Where it is told when it begins, its levels come from `start` on: act by that, `now` lies
+   * ahead. Returns when on_time is wanted. May be null otherwise. */
   fieldproof_time (*receive_levels)(void* self, unsigned port, fieldproof_time start, fieldproof_time rate,
                                     const unsigned char* levels, unsigned count, fieldproof_time now);
   /* The instant has come that was asked for. Returns when on_time is wanted again. */

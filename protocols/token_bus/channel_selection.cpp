@@ -40,7 +40,8 @@ void ChannelSelection::on_start_delimiter(Channel channel, kernel::Time when) {
   State& other = of(other_than(channel));
   // It answers one of the other channel, or is answered.
   if (own.missing_at == kernel::kNever && is_missed_by(other_than(channel), when))
-    other.missing_at = std::min(other.missing_at, when + missing_after());
+    other.missing_at =
+        begins_slot_anew() ? when + missing_after() : std::min(other.missing_at, when + missing_after());
   // What the other channel was selected for comes here later: it is no second one.
   const bool is_late = own.missing_at != kernel::kNever && !waiting_;
   own.missing_at = kernel::kNever;
@@ -97,15 +98,16 @@ unsigned ChannelSelection::clean_after(unsigned clean, Carried carried) const {
   return carried == Carried::clean ? clean + 1 : carried == Carried::spoiled ? 0 : clean;
 }
 
-// Once both have carried the same transmission.
+// Once both have carried the same transmission. One that the other channel did not carry has no other.
 void ChannelSelection::compare(kernel::Time when) {
-  const auto& [a, b] = states_;
+  auto& [a, b] = states_;
   if (!a.ended || !b.ended) return;
-  const kernel::Time first = std::min(a.ended->start_delimiter, b.ended->start_delimiter);
-  const bool is_same = std::max(a.ended->start_delimiter, b.ended->start_delimiter) <= first + slot();
+  State& earlier = a.ended->start_delimiter <= b.ended->start_delimiter ? a : b;
+  const State& later = &earlier == &a ? b : a;
+  const bool is_same = later.ended->start_delimiter <= earlier.ended->start_delimiter + slot();
+  if (!is_same) return earlier.ended.reset();
   const std::array carried{a.ended->carried, b.ended->carried};
   for (State& one : states_) one.ended.reset();
-  if (!is_same) return;
   for (const Channel channel : kChannels) {
     State& own = of(channel);
     own.errors = errors_after(own.errors, carried[static_cast<std::size_t>(channel)],
@@ -145,7 +147,7 @@ void ChannelSelection::settle_at(kernel::Time at) {
   if (selected_at() <= at) {
     const Channel channel = waiting_->channel;
     select(channel, waiting_->start_delimiter);
-    if (!of(channel).is_within) serving_.reset();  // it has ended meanwhile
+    if (!of(channel).is_within && !keeps_an_abort()) serving_.reset();  // it has ended meanwhile
   }
   for (const Channel channel : kChannels) {
     State& own = of(channel);

@@ -111,6 +111,8 @@ class ChannelSelection {
   // ---- decisions ----
   // The other channel has had a start delimiter and this one none for so long.
   virtual kernel::Duration missing_after() const { return slot(); }
+  virtual bool begins_slot_anew() const { return false; }
+  virtual bool keeps_an_abort() const { return false; }
   virtual kernel::Duration waits_for_preferred() const { return skew(); }
   // A start delimiter of `channel` while the other one serves.
   virtual bool is_new_transmission(Channel channel, kernel::Time when) const;

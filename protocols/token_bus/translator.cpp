@@ -156,6 +156,7 @@ void Translator::follow_phy() {
   bits_.pop();
   const kernel::Duration after = after_own_transmission(unit.begin);
   if (!takes_line(blocks_.manager->is_looped_back(), after < kernel::Duration{})) return;
+  if (!works_in_management_mode() && is_management_within(unit.begin, unit.end)) return;
   if (is_error_masked(after)) cell.status.has_signal_error = false;
   decode({unit.begin, unit.end, unit.rate / 2}, cell.symbol, cell.status);
 }

@@ -35,6 +35,7 @@ class Translator : public TranslatorDevice {
   // A signal error so long after the end of an own transmission is the SQE test of the transceiver; within
   // one, where the time is negative, it is a collision.
   virtual bool is_error_masked(kernel::Duration after_own_transmission) const;
+  virtual bool works_in_management_mode() const { return true; }
   virtual bool takes_line(bool is_looped_back, bool /*is_sending*/) const { return !is_looped_back; }
 
  private:
