@@ -5,10 +5,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/exit_code.hpp"
 #include "cli/probe/program_fixture.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -60,6 +62,8 @@ TEST_F(StoredEmc, IsMadeSmallInEachProtocol) {
                  {"--worst", "A", "--test-levels", "4", "--repetition", "5kHz", "--polarity", "+",
                   "--duration", "300ms"},
                  "exchange_not_served_at_once"}}) {
+    // Its octets come slowly: minutes under a sanitizer, which sees the same in the others.
+    if (kernel::kIsSanitized && row.protocol == std::string_view("fieldbus_dll")) continue;
     std::filesystem::remove_all(folder_ / "out");
     const Called stored = emc(row.protocol, row.iut, row.test);
     ASSERT_EQ(stored.exit_code, kFailed) << row.iut << stored.out << stored.err;
