@@ -62,8 +62,9 @@ TEST_F(StoredEmc, IsMadeSmallInEachProtocol) {
                  {"--worst", "A", "--test-levels", "4", "--repetition", "5kHz", "--polarity", "+",
                   "--duration", "300ms"},
                  "exchange_not_served_at_once"}}) {
-    // Its octets come slowly: minutes under a sanitizer, which sees the same in the others.
-    if (kernel::kIsSanitized && row.protocol == std::string_view("fieldbus_dll")) continue;
+    // Slow lines take a quarter of an hour under a sanitizer, which sees the same in the others.
+    const std::string_view protocol = row.protocol;
+    if (kernel::kIsSanitized && (protocol == "valve_bus" || protocol == "fieldbus_dll")) continue;
     std::filesystem::remove_all(folder_ / "out");
     const Called stored = emc(row.protocol, row.iut, row.test);
     ASSERT_EQ(stored.exit_code, kFailed) << row.iut << stored.out << stored.err;
