@@ -19,8 +19,8 @@ struct MaskRow {
   std::string_view text;
   std::string script;
   bool is_from_the_middle;
-  std::size_t every = 1;  // bit
-  std::size_t first = 0;
+  std::size_t every = 1;  // bits from one error to the next
+  std::size_t first = 0;  // bits that come before the first one
 };
 constexpr std::size_t kLast = 40;
 constexpr std::size_t kLead = 16;  // symbols, the preamble and start delimiter of what is received
@@ -48,13 +48,12 @@ std::string lead() {
 }
 
 // Ones, and errors in them.
-SideBits with_errors(TranslatorScene& scene, bool is_from_the_middle, std::size_t script,
-                     std::size_t every = 1, std::size_t first = 0) {
+SideBits with_errors(TranslatorScene& scene, const MaskRow& row) {
   const TranslatorConfiguration& one = scene.bench.configuration();
-  const std::size_t begin = is_from_the_middle ? kLast / 2 : kLast + one.delay_symbols;
-  const std::size_t end = script + one.delay_symbols + one.error_mask_symbols + kLead;
+  const std::size_t begin = row.is_from_the_middle ? kLast / 2 : kLast + one.delay_symbols;
+  const std::size_t end = row.script.size() + one.delay_symbols + one.error_mask_symbols + kLead;
   SideBits bits = side_bits_of(encoded(lead() + std::string(end - kLead, '1')));
-  for (std::size_t n = 2 * begin + first; n < bits.size() - 2 * std::size_t{4}; n += every)
+  for (std::size_t n = 2 * begin + row.first; n < bits.size() - 2 * std::size_t{4}; n += row.every)
     bits[n].has_error = true;
   return bits;
 }
@@ -96,7 +95,7 @@ void expect_masked(TranslatorScene& scene, const SideBits& bits, std::string_vie
 
 void receive_errors(TranslatorScene& scene) {
   const MaskRow& row = mask_rows().at(scene.round % mask_rows().size());
-  const SideBits bits = with_errors(scene, row.is_from_the_middle, row.script.size(), row.every, row.first);
+  const SideBits bits = with_errors(scene, row);
   scene.exchange(row.script, bits);
   scene.judge.expect(!scene.sent().empty(), "nothing_sent", "a preamble", "nothing");
   expect_masked(scene, bits, "mask_wrong");
@@ -106,7 +105,7 @@ void receive_errors(TranslatorScene& scene) {
 void receive_errors_without_own(TranslatorScene& scene) {
   scene.exchange(scene.round % 2 == 0 ? "rrrrllllSSSS" : "rrrrllllttttSSSS");
   scene.rest();
-  const SideBits bits = with_errors(scene, false, kLast);
+  const SideBits bits = with_errors(scene, mask_rows().front());
   scene.exchange(scene.round % 2 == 0 ? sent(kLast) : "", bits);
   expect_masked(scene, bits, "masked_without_transmission");
   scene.rest();
