@@ -1,4 +1,4 @@
-// ID cycles of a recognition, with messages and with errors, and orders for them (IM-19, IM-31, IM-39).
+// ID cycles of a recognition, with messages and with errors, and orders for them (IM-19, IM-31).
 #include <fmt/format.h>
 
 #include <array>

@@ -186,6 +186,24 @@ TEST_F(OneSelection, ThreeSpoiledInARowAreAFault) {
   EXPECT_EQ(take(), "B@1800 ");
 }
 
+// It is not compared with what both carry later: that has its own other half.
+TEST_F(OneSelection, WhatOneCarriesAloneHasNoOther) {
+  both_carry(clean, spoiled);
+  both_carry(clean, spoiled);
+  one_carries(B);
+  begins(A, now_);
+  ends(A, now_ + 15);
+  begins(B, now_ + 20);
+  ends(B, now_ + 40);
+  now_ += 100;
+  passes(now_);
+  both_carry(clean, spoiled);
+  EXPECT_FALSE(selection_.has_fault(B)) << "a clean one came in between: " << take();
+  both_carry(clean, spoiled);
+  both_carry(clean, spoiled);
+  EXPECT_TRUE(selection_.has_fault(B));
+}
+
 TEST_F(OneSelection, ThreeCleanInARowEndAFault) {
   one_carries(A);
   EXPECT_EQ(take(), "A@1000 [B no start delimiter 1028] ");
