@@ -71,7 +71,9 @@ TEST_F(Check, SearchesAnAttachedNodeAndAnInterbusSlave) {
 }
 
 TEST_F(Check, SearchesEachRoleOfTheDataLinkHereAndInAProcess) {
-  for (const std::string role : {"fieldbus_dll/isa_dle", "fieldbus_dll/ff_device", "fieldbus_dll/ff_las"}) {
+  for (kernel::FewerIfSanitized few(3);
+       const std::string role : {"fieldbus_dll/isa_dle", "fieldbus_dll/ff_device", "fieldbus_dll/ff_las"}) {
+    if (few.leaves_out()) continue;
     const std::string mutant = role == "fieldbus_dll/ff_las" ? "misses_of_all_count" : "newest_first";
     EXPECT_EQ(call({"check", role, "--iut", "mutant:" + mutant}).exit_code, kFailed) << role;
     const std::string station = "exec:'" FIELDPROOF_EXE "' station " + role + " ";

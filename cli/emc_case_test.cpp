@@ -191,8 +191,8 @@ TEST_F(StoredEmc, IsWrittenWhenTimeIsOver) {
 }
 
 TEST_F(StoredEmc, IsWrittenAfterASignal) {
-  ASSERT_EQ(emc("valve_bus", "node@3=mutant:write_not_checked", bursts("60s", "-")).exit_code, kFailed);
-  Call interrupted = prepared({"shrink", "out/valve_bus-1-1.case.json", "--case", "small.json"});
+  ASSERT_EQ(emc("interbus", "slave@1=mutant:does_not_mark_status", bursts("20s", "+")).exit_code, kFailed);
+  Call interrupted = prepared({"shrink", "out/interbus-1-1.case.json", "--case", "small.json"});
   interrupted.signal = SIGINT;
   interrupted.signal_after = "fieldproof ";
   const Called called = interrupted.run();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/probe/program_fixture.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -225,12 +226,12 @@ TEST_F(EmcVerb, AChannelOnWhichNothingComesThroughShowsNothing) {
 
 // Without a closed form of whole exchanges the code word of the frame is the bound.
 TEST_F(EmcVerb, ANodeWithoutABlockCheckIsFoundOnAChannelOfTheTextbooks) {
-  const auto on_channel = [&](const std::string& iut) {
+  const auto on_channel = [&](const std::string& iut, const std::string& duration) {
     return ProgramFixture::call(
-        {"emc", "valve_bus", "--channel", "bsc:0.001", "--duration", "120s", "--quiet", "--iut", iut});
+        {"emc", "valve_bus", "--channel", "bsc:0.001", "--duration", duration, "--quiet", "--iut", iut});
   };
-  EXPECT_EQ(on_channel("node@3=ref").exit_code, 0);
-  const Called unchecked = on_channel("node@3=mutant:write_not_checked");
+  EXPECT_EQ(on_channel("node@3=ref", kernel::kIsSanitized ? "20s" : "120s").exit_code, 0);
+  const Called unchecked = on_channel("node@3=mutant:write_not_checked", "120s");
   EXPECT_EQ(unchecked.exit_code, 1) << unchecked.out << unchecked.err;
 }
 

@@ -17,9 +17,10 @@ class ReportVerb : public ProgramFixture {
  protected:
   // A run with failures, stored in `out`.
   Called run(const std::string& out, std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments = {"run",   "interbus/slave/frame_check/**",
-                                          "--iut", "slave@1=mutant:latches_in_spite_of_own_error",
-                                          "--out", out};
+    std::vector<std::string> arguments = {"run",      "interbus/slave/frame_check/**",
+                                          "--volume", "quick",
+                                          "--iut",    "slave@1=mutant:latches_in_spite_of_own_error",
+                                          "--out",    out};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return call(std::move(arguments));
   }
@@ -69,7 +70,8 @@ TEST_F(ReportVerb, JoinsRunsAndDocuments) {
 
 // The page and the terminal say the same, and the worst of all, whatever is named first.
 TEST_F(ReportVerb, SaysTheWorstOfAllThatIsOnThePage) {
-  EXPECT_EQ(call({"run", "interbus/slave/frame_check/**", "--out", "good"}).exit_code, 0);
+  EXPECT_EQ(call({"run", "interbus/slave/frame_check/**", "--volume", "quick", "--out", "good"}).exit_code,
+            0);
   run("bad");
   const Called made = call({"report", "good", "bad", "--html", "r.html"});
   EXPECT_EQ(made.exit_code, 0) << made.err;
@@ -135,7 +137,10 @@ TEST_F(ReportVerb, ShowsCampaignsAndFits) {
 }
 
 TEST_F(ReportVerb, PutsTwoRunsSideBySide) {
-  EXPECT_EQ(call({"run", "interbus/slave/frame_check/**", "--record", "all", "--out", "good"}).exit_code, 0);
+  EXPECT_EQ(
+      call({"run", "interbus/slave/frame_check/**", "--volume", "quick", "--record", "all", "--out", "good"})
+          .exit_code,
+      0);
   run("bad");
   const Called made = call({"report", "good", "bad", "--compare", "--html", "r.html"});
   EXPECT_EQ(made.exit_code, 0) << made.err;
@@ -153,7 +158,8 @@ TEST_F(ReportVerb, PutsTwoRunsSideBySide) {
 }
 
 TEST_F(ReportVerb, ShowsHowRunsWentOneAfterAnother) {
-  EXPECT_EQ(call({"run", "interbus/slave/frame_check/**", "--out", "nightly/1"}).exit_code, 0);
+  EXPECT_EQ(
+      call({"run", "interbus/slave/frame_check/**", "--volume", "quick", "--out", "nightly/1"}).exit_code, 0);
   run("nightly/2");
   fs::create_directories(folder_ / "nightly" / "damaged");
   write("nightly/damaged/results.json", "{");

@@ -78,10 +78,13 @@ struct CaseRole {
     return made;
   }
 
-  // The case of an id; that of a sequence has no procedure yet.
   Case find(const TestCase& test_case) const {
     for (const Case& one : cases())
       if (one.test_case.id == test_case.id) return one;
+    return of_sequences(test_case);
+  }
+  // A case of sequences is none of `cases`, and has no procedure yet.
+  Case of_sequences(const TestCase& test_case) const {
     Case blank{test_case, nullptr};
     if (sequences) blank.needs = sequences->needs;
     return blank;
@@ -128,7 +131,7 @@ RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
   if (role.sequences) {
     row.sequences = role.sequences->role();
     row.run_sequence = [role, run_case](const Sequence& sequence, RunningCase& run) {
-      Case one = role.find(run.test_case());
+      Case one = role.of_sequences(run.test_case());
       one.procedure = [&sequence, &vocabulary = role.sequences->role().vocabulary,
                        run_sequence = role.sequences->run](auto& bench, CaseJudge& judge) {
         if (!sequence.settings.empty())

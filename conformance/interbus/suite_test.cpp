@@ -73,7 +73,8 @@ TEST(InterbusSuite, NoTwoAnswersOfAPicsAccuseAReference) {
 }
 
 TEST(InterbusSuite, OneSeedReplaysEveryBit) {
-  for (const TestCase& test_case : suite().cases()) {
+  for (kernel::FewerIfSanitized few(4); const TestCase& test_case : suite().cases()) {
+    if (few.leaves_out()) continue;
     const auto once = run_case({&suite(), &test_case}, setup_of("", ""));
     const auto again = run_case({&suite(), &test_case}, setup_of("", ""));
     EXPECT_EQ(once.outcome.result.fingerprint, again.outcome.result.fingerprint) << test_case.id;
@@ -118,7 +119,8 @@ TEST(InterbusSuite, ARecordingHasLinesForPeople) {
 }
 
 TEST(InterbusSuite, EveryCasesOwnRecordingIsJudgedLikeTheRun) {
-  for (const TestCase& test_case : suite().cases()) {
+  for (kernel::FewerIfSanitized few(4); const TestCase& test_case : suite().cases()) {
+    if (few.leaves_out()) continue;
     expect_same_verdict_from_recording(test_case.id, test_case.role(), "ref");
   }
 }

@@ -39,7 +39,7 @@ TEST(TokenStationSequence, FindsWhatShowsInASituation) {
       "last_claim_always_short",   "fault_unreported",  "timers_begin_with_the_token",
       "response_to_another_taken", "zero_is_no_limit",  "blanks_always",
       "low_control_bits_only",     "low_pairs_first",   "group_answers"};
-  for (kernel::FewerIfSanitized few(3); const std::string_view name : names) {
+  for (kernel::FewerIfSanitized few(6); const std::string_view name : names) {
     if (few.leaves_out()) continue;
     EXPECT_TRUE(searched("mutant:" + std::string(name), 2'000).found) << name;
   }
