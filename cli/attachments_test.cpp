@@ -112,8 +112,10 @@ class Attachments : public ProgramFixture {
 
  private:
   inline static const std::set<std::string> kOfLevels{
-      "frame/without_its_code_is_none", "frame/a_start_delimiter_begins_anew", "frame/a_tail_is_no_silence",
-      "frame/two_in_one_transmission_are_received", "frame/levels_may_be_finer"};
+      "frame/without_its_code_is_none", "frame/a_start_delimiter_begins_anew",
+      "frame/a_tail_is_no_silence",     "frame/two_in_one_transmission_are_received",
+      "frame/levels_may_be_finer",      "frame/what_is_in_front_is_left",
+      "frame/a_jabber_changes_nothing", "frame/jitter_is_taken"};
   static constexpr std::size_t kOneOf = kernel::kIsSanitized ? 8 : 1;
 
   int runs_ = 0;
@@ -521,6 +523,21 @@ TEST_F(Attachments, DeathInARunIsAVerdictWithEvidence) {
   EXPECT_EQ(dead.reason, "implementation_crashed");
   EXPECT_HOLDS(dead.findings, "was ended by signal 11");
   EXPECT_HOLDS(dead.findings, "log: the bus is gone");
+}
+
+// Without protection it can end the program: not as if all had passed.
+TEST_F(Attachments, ALibraryThatEndsTheProgramIsNoPass) {
+  for (const std::string end : {"exit", "_exit"}) {
+    if (kernel::kIsSanitized && end == "_exit") continue;  // theirs is not replaced
+    write("ends.c", "void " + end + "(int);\n__attribute__((constructor)) static void ends(void) { " + end +
+                        "(0); }\n");
+    Call compiler = prepared({"-shared", "-fPIC", "ends.c", "-o", "ends.so"}, installed("cc"));
+    ASSERT_EQ(compiler.run().exit_code, 0);
+    const Called called = call({"run", "valve_bus/node/read/is_answered", "--volume", "quick", "--iut",
+                                "plugin:./ends.so?in-process"});
+    EXPECT_EQ(called.exit_code, 5) << end;
+    EXPECT_HOLDS(called.err, "before all was done");
+  }
 }
 
 class NobodyActs final : public iut::Bench {

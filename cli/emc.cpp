@@ -94,6 +94,8 @@ class Campaign {
     session_.terminal.print(
         simulation_header(session_, done_.seed, session_.settings.text("network"), row_.network.own_network));
     session_.terminal.print(players_text(stored_.request.implementations));
+    if (const std::string complaint = complaint_on_quiet_line(); !complaint.empty())
+      return end_without_bursts(complaint);
     search(response);
     session_.terminal.print(emc_table_head(done_.has_bursts));
     conformance::OrderedWork<Ran> work;
@@ -140,6 +142,27 @@ class Campaign {
     network::AcceptanceRules acceptance;
     std::vector<network::ProtectedFrame> frames;
   };
+
+  // Of a network with implementations; one that misbehaves does so in the first test, too.
+  std::string complaint_on_quiet_line() const {
+    if (!references_) return {};
+    try {
+      return emc::complaint_on_quiet_line(*network_->make(done_.seed), done_.seed);
+    } catch (const iut::Misbehaviour&) {
+      return {};
+    }
+  }
+
+  // What is wrong without bursts is no effect of theirs.
+  void end_without_bursts(const std::string& complaint) {
+    session_.terminal.print(emc_table_head(done_.has_bursts));
+    for (const EmcTest& planned : planned_) {
+      EmcTest& test = done_.tests.emplace_back(planned);
+      test.result.complaint = complaint;
+      session_.terminal.print(emc_line(test));
+    }
+    done_.is_complete = true;
+  }
 
   Ran run_one(const emc::LineResponse& response, const EmcCase& test) const {
     Ran ran;

@@ -40,11 +40,6 @@ class WindowedChannel final : public fault::Channel {
   EmcRun& run_;
 };
 
-std::string told(const network::WrongWord& wrong, const network::Network& network) {
-  return fmt::format("at {} '{}' got 0x{:04X}, and 0x{:04X} was sent", kernel::describe(wrong.when),
-                     network.signals()[wrong.signal].name, wrong.got, wrong.sent);
-}
-
 }  // namespace
 
 EmcRun run_emc_case(const EmcCase& test, const emc::LineResponse& response, bool is_recorded,
@@ -67,7 +62,6 @@ EmcRun run_emc_case(const EmcCase& test, const emc::LineResponse& response, bool
     if (is_recorded) trace.set_recorder(&recorder);
     run.result = emc::run_immunity(*network, response, settings);
     trace.set_recorder(nullptr);
-    if (run.result.first_wrong) run.first_wrong = told(*run.result.first_wrong, *network);
     for (trace::Channel n = 0; n < trace.channel_count(); ++n) run.channels.push_back(trace.channel_name(n));
     run.recording = recorder.take();
   } catch (const iut::Misbehaviour& misbehaviour) {

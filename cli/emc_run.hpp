@@ -14,7 +14,6 @@ namespace fieldproof::cli {
 
 struct EmcRun {
   emc::ImmunityResult result;
-  std::string first_wrong;  // "at 1.5 ms 'output ...' got 0x1234, and 0x2345 was sent"; or empty
   FlippedBits struck;
   std::vector<kernel::Time> changed;   // the starts of transmissions that arrived otherwise, in no order
   std::vector<trace::Change> changes;  // the first of them

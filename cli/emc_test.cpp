@@ -235,6 +235,21 @@ TEST_F(EmcVerb, ANodeWithoutABlockCheckIsFoundOnAChannelOfTheTextbooks) {
   EXPECT_EQ(unchecked.exit_code, 1) << unchecked.out << unchecked.err;
 }
 
+// Else it would be said that bursts make it so, and from which voltage on.
+TEST_F(EmcVerb, WhatIsWrongOnAQuietLineIsNotPutDownToBursts) {
+  for (const auto& [iut, what] :
+       {std::pair{"slave@2=mutant:output_octets_swapped", "'output to di16 word 0 (slave@2)' got 0x"},
+        std::pair{"slave@2=mutant:input_bit_stuck", "'input of di16 word 0 (slave@2)' got 0x"}}) {
+    const Called called = ProgramFixture::call(
+        {"emc", "interbus", "--test-levels", "4", "--duration", "1s", "--json", "quiet.json", "--iut", iut});
+    EXPECT_EQ(called.exit_code, 2) << called.out << called.err;
+    EXPECT_HOLDS(called.out, "the network does not work on a quiet line: ");
+    EXPECT_HOLDS(called.out, what);
+    EXPECT_FALSE(json("quiet.json").at("tests").at(0).at("came_up").get<bool>());
+    expect_valid({"quiet.json"}, "emc");
+  }
+}
+
 TEST_F(EmcVerb, WhereNoBurstMetAReceiverNothingIsShown) {
   const Called called = call({"--test-levels", "4", "--duration", "1ms"});
   EXPECT_EQ(called.exit_code, 2) << called.out;

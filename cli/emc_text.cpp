@@ -154,6 +154,7 @@ ordered_json result_json(const emc::ImmunityResult& result) {
           {"complaint", result.complaint},
           {"criterion", emc::name(result.criterion)},
           {"decided_by", result.decided_by},
+          {"first_wrong", result.first_wrong_text},
           {"longest_bad_run", result.longest_bad_run},
           {"recovered_by_itself", result.recovered_by_itself},
           {"recovered_after_start", result.recovered_after_start},
@@ -192,7 +193,7 @@ ordered_json channel_json(const EmcTest& test) {
 
 std::string does_not_come_up(const emc::ImmunityResult& result) {
   if (result.complaint.empty()) return "  the network does not come up on a quiet line\n";
-  return fmt::format("  the network does not come up on a quiet line: {}\n",
+  return fmt::format("  the network does not work on a quiet line: {}\n",
                      reports::escaped_line(result.complaint));
 }
 
@@ -349,6 +350,7 @@ std::string emc_line(const EmcTest& test) {
     line +=
         fmt::format("    seen by the search, in a test of {}\n", kernel::describe(test.of_search->duration));
   line += evidence_lines(result);
+  if (!result.first_wrong_text.empty()) line += fmt::format("    the first {}\n", result.first_wrong_text);
   if (!result.complaint.empty()) line += fmt::format("    {}\n", reports::escaped_line(result.complaint));
   if (result.complaint.empty() && !result.was_disturbed())
     line += "    no burst met a receiver: this shows nothing\n";

@@ -143,11 +143,12 @@ int measure_protocol(Session& session) {
   if (interruption.signal() != 0) return kSignalBase + interruption.signal();
   if (measured.series.empty()) return kNothingJudged;
   int code = measured.failures.empty() ? code_of(measure::agreement(measured)) : kFailed;
-  if (code == kFailed && measured.failures.empty() && !measured.implementations.empty()) {
+  if (code != kAllAsExpected && measured.failures.empty() && !measured.implementations.empty()) {
     session.terminal.print(
         "The closed forms are those of the reference stations. Others may be faster or slower within what "
         "the "
-        "standard allows, so a difference is no failure here; 'fieldproof run' judges each station.\n");
+        "standard allows, so a difference is no failure here, and a row that is open may be one; 'fieldproof "
+        "run' judges each station.\n");
     code = kInconclusive;
   }
   if (code != kAllAsExpected) {

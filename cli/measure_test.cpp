@@ -276,5 +276,20 @@ TEST_F(MeasureVerb, ThePapersBurstsFailWithoutAShieldAndNotBehindAProperOne) {
   EXPECT_EQ(section["rows"][16]["verdict"], "not checked");
 }
 
+// Whoever plays may be faster or slower, and not wrong.
+TEST_F(MeasureVerb, WordsThatNobodyGaveAreAFailureOfAnyStation) {
+  const Called called = call({"measure", "interbus", "--signal", "50Hz", "--duration", "1s", "--iut",
+                              "slave@2=mutant:input_bit_stuck"});
+  EXPECT_EQ(called.exit_code, 1) << called.out;
+  EXPECT_HOLDS(called.out, " words that the input never had\n");
+}
+
+TEST_F(MeasureVerb, PulsesOfManyCyclesThatNeverArriveAreAFailureOfAnyStation) {
+  const Called called = call({"measure", "valve_bus", "--signal", "5Hz", "--duration", "10s", "--iut",
+                              "node@1=mutant:switches_latched_at_power_up"});
+  EXPECT_EQ(called.exit_code, 1) << called.out;
+  EXPECT_HOLDS(called.out, " pulses arrived, though each lasted for many cycles");
+}
+
 }  // namespace
 }  // namespace fieldproof::cli

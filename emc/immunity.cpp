@@ -47,7 +47,7 @@ class CountedChannel final : public fault::Channel {
 
 class Run final : private network::ExchangeWatcher {
  public:
-  Run(network::Network& network, const LineResponse& response, const ImmunitySettings& settings)
+  Run(network::Network& network, const ImmunitySettings& settings)
       : network_(network),
         segment_(network.segment()),
         acceptance_(network.acceptance()),
@@ -57,6 +57,23 @@ class Run final : private network::ExchangeWatcher {
     for (const network::CycleKind& kind : network.cycles()) result_.cycles.push_back({kind});
     last_begin_.resize(result_.cycles.size());
     network_.watch(*this);
+  }
+
+  // Without bursts.
+  std::string complaint_on_quiet_line() {
+    if (!come_up()) {
+      const std::string complaint(network_.complaint());
+      return complaint.empty() ? "it does not come up" : complaint;
+    }
+    statistics_.begin();
+    const bool is_delivered = delivers_all(most_exchanges_waited());
+    statistics_.end();
+    network_.end();
+    if (const auto wrong = statistics_.first_wrong()) return text_of(*wrong);
+    return is_delivered ? "" : "not all words that were sent arrived";
+  }
+
+  void suffer_and_recover(const LineResponse& response) {
     if (!come_up()) {
       result_.complaint = network_.complaint();
       return;
@@ -155,14 +172,23 @@ class Run final : private network::ExchangeWatcher {
   }
 
   void recover() {
-    const std::uint64_t most = std::max<std::uint64_t>(
-        acceptance_.least_exchanges_waited, acceptance_.limits_waited * network_.recovery_limit().exchanges);
+    const std::uint64_t most = most_exchanges_waited();
     result_.recovered_by_itself = delivers_all(most);
     result_.recovery_exchanges = recovery_exchanges_;
     if (result_.recovered_by_itself || !result_.is_complete) return;
     network_.stop();
     segment_.run_for(acceptance_.pause_before_start);
     result_.recovered_after_start = come_up() && delivers_all(most);
+  }
+
+  std::uint64_t most_exchanges_waited() const {
+    return std::max<std::uint64_t>(acceptance_.least_exchanges_waited,
+                                   acceptance_.limits_waited * network_.recovery_limit().exchanges);
+  }
+
+  std::string text_of(const network::WrongWord& wrong) const {
+    return fmt::format("at {} '{}' got 0x{:04X}, and 0x{:04X} was sent", kernel::describe(wrong.when),
+                       network_.signals()[wrong.signal].name, wrong.got, wrong.sent);
   }
 
   // Each signal arrives once more, within so many exchanges.
@@ -238,6 +264,7 @@ class Run final : private network::ExchangeWatcher {
     statistics_.end();
     result_.counts = statistics_.counts();
     result_.first_wrong = statistics_.first_wrong();
+    if (result_.first_wrong) result_.first_wrong_text = text_of(*result_.first_wrong);
     for_each_statistics([&](const BurstStatistics& one) {
       ++result_.receivers;
       result_.line += one;
@@ -339,9 +366,17 @@ std::string_view text_of(Criterion criterion) {
   return "";
 }
 
+std::string complaint_on_quiet_line(network::Network& network, std::uint64_t seed) {
+  ImmunitySettings settings;
+  settings.seed = seed;
+  return Run(network, settings).complaint_on_quiet_line();
+}
+
 ImmunityResult run_immunity(network::Network& network, const LineResponse& response,
                             const ImmunitySettings& settings) {
-  return Run(network, response, settings).result();
+  Run run(network, settings);
+  run.suffer_and_recover(response);
+  return run.result();
 }
 
 }  // namespace fieldproof::emc

@@ -65,6 +65,7 @@ struct ImmunityResult {
   std::string decided_by;  // of C and D: which number, in words
   std::optional<kernel::Time> decided_at;  // when it happened first, where it has an instant
   std::optional<network::WrongWord> first_wrong;
+  std::string first_wrong_text;       // "at 1.5 ms 'output ...' got 0x1234, and 0x2345 was sent"; or empty
   kernel::Time on{};                  // bursts may come from here on
   std::uint64_t fingerprint = 0;      // of the trace
   network::ErrorStatistics counts;    // from the first pulse that can come to the end of the recovery
@@ -84,6 +85,10 @@ struct ImmunityResult {
   // Where not, a criterion says nothing.
   bool was_disturbed() const { return receivers > 0 && had_a_burst; }
 };
+
+// Comes up and delivers each signal once without anything on its lines. Empty, or what is wrong: then bursts
+// would be blamed for it. `network` has not been started.
+std::string complaint_on_quiet_line(network::Network& network, std::uint64_t seed);
 
 // `network` has not been started.
 ImmunityResult run_immunity(network::Network& network, const LineResponse& response,

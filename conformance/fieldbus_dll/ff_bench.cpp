@@ -67,7 +67,7 @@ std::string FfReport::text() const {
 
 void FfBench::set_supply(bool is_on) {
   if (is_on) {
-    station_->start(now());
+    has_started_ = station_->start(now());
   } else {
     station_->stop(now());
   }

@@ -79,11 +79,12 @@ void judge_end(FfBench& bench, CaseJudge& judge) {
 
 const std::vector<FfCase>& ff_cases() {
   static const std::vector<FfCase> cases = [] {
-    static constexpr std::array kChapters{
-        ff_probe_cases,      ff_token_cases,       ff_publisher_cases, ff_frame_cases,
-        ff_schedule_cases,   ff_circulation_cases, ff_rotation_cases,  ff_live_list_cases,
-        ff_time_cases,       ff_claim_cases,       ff_immunity_cases,  ff_link_settings_cases,
-        ff_link_times_cases, ff_endings_cases,     ff_request_cases,   ff_reception_cases};
+    static constexpr std::array kChapters{ff_probe_cases,      ff_token_cases,       ff_publisher_cases,
+                                          ff_frame_cases,      ff_schedule_cases,    ff_circulation_cases,
+                                          ff_rotation_cases,   ff_live_list_cases,   ff_time_cases,
+                                          ff_claim_cases,      ff_immunity_cases,    ff_link_settings_cases,
+                                          ff_link_times_cases, ff_endings_cases,     ff_request_cases,
+                                          ff_reception_cases,  ff_transmission_cases};
     auto all = cases_of<FfCase>(kChapters, ff_details());
     all.push_back(ff_canary("ff_device"));
     all.push_back(ff_canary("ff_las"));

@@ -27,6 +27,7 @@ std::vector<FfCase> ff_link_times_cases();
 std::vector<FfCase> ff_endings_cases();
 std::vector<FfCase> ff_request_cases();
 std::vector<FfCase> ff_reception_cases();
+std::vector<FfCase> ff_transmission_cases();
 std::vector<FfCase> ff_schedule_cases();
 std::vector<FfCase> ff_circulation_cases();
 std::vector<FfCase> ff_rotation_cases();

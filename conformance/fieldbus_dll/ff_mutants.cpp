@@ -6,6 +6,7 @@
 #include "conformance/fieldbus_dll/ff_las_sequence_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_request_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_sequence_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/ff_transmission_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/link_seeded_faults.hpp"
 
 namespace fieldproof::conformance {
@@ -245,6 +246,8 @@ std::vector<FfRow> ff_reception_rows() {
        mutant<link_seeded_faults::SilenceFromTheDelimiter<FfStation>>()},
       {"last_of_a_transmission", "", "takes the last frame of a transmission only",
        mutant<link_seeded_faults::LastOfATransmission<FfStation>>()},
+      {"two_of_a_transmission", "", "takes the first two frames of a transmission only",
+       mutant<link_seeded_faults::FirstTwoOfATransmission<FfStation>>()},
       {"everybody_on_a_link", "", "takes FFFF with a link for everybody", mutant<TakesForEverybody>(true)},
       {"everybody_of_a_node", "", "takes the selector FF of any node for everybody",
        mutant<TakesForEverybody>(false)},
@@ -252,6 +255,34 @@ std::vector<FfRow> ff_reception_rows() {
        mutant<link_seeded_faults::DeafBehind71Minutes<FfStation>>()},
       {"levels_are_half_bits", "", "takes each level for half a bit, however fine they are",
        mutant<link_seeded_faults::LevelsAreHalfBits<FfStation>>()},
+      {"does_not_recover_clock", "", "samples with its own clock",
+       mutant<link_seeded_faults::DoesNotRecoverClock<FfStation>>()},
+      {"wants_exact_edges", "", "receives nothing whose edges are off",
+       mutant<link_seeded_faults::WantsExactEdges<FfStation>>()},
+      {"pairs_from_the_beginning", "", "finds no frame after an odd number of half bits",
+       mutant<FindsPairsOnly>()},
+      {"deaf_behind_no_symbol", "", "leaves a transmission that begins with half bits that are no symbol",
+       mutant<DeafBehindNoSymbol>()},
+      {"deaf_behind_a_cut_frame", "", "leaves a transmission whose first frame ends without a delimiter",
+       mutant<DeafBehindACutFrame>()},
+      {"node_ff_is_nobody", "", "takes FF for the address of nobody", mutant<NodeFfIsNobody>()},
+      {"restarts_on_a_long_jabber", "", "begins anew when the line was busy for more than a second",
+       mutant<RestartsOnALongJabber>()},
+      {"receives_while_sending", "", "receives what others send while it sends",
+       mutant<ReceivesWhileSending>()},
+      {"others_taken_for_its_echo", "", "takes others that begin while it sends for itself",
+       mutant<TakesOthersForItsEcho>()},
+      {"refuses_on_a_busy_line", "", "refuses its user while others send", mutant<RefusesOnABusyLine>()},
+      {"short_requests_taken", "", "takes a submit that ends within its address",
+       mutant<ShortRequestsTaken>()},
+      {"cut_to_its_priority", "", "cuts a DT3 to what a DT1 of its priority carries",
+       mutant<CutToItsPriority>()},
+      {"long_dt3_unsupported", "", "leaves a DT3 with a long address where it does not support them",
+       mutant<LongDt3Unsupported>()},
+      {"refuses_once", "", "starts with impossible rules the second time", mutant<RefusesOnce>()},
+      {"thirty_two_buffers", "", "publishes 32 buffers and no more", mutant<KnowsSoMany>(32U, 1'000U)},
+      {"sixty_four_subscriptions", "", "subscribes to 64 buffers and no more",
+       mutant<KnowsSoMany>(1'000U, 64U)},
   };
 }
 

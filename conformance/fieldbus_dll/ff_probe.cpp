@@ -97,10 +97,20 @@ std::vector<FfCase> ff_probe_cases() {
           {.is_live = false},
           on_chart(must_case("fieldbus_dll/ff_device/probe/impossible_rules_are_refused", "FF-36",
                              "V(MID) is at most (V(MRD) - 1) x V(ST).", vendors("range of V(MID)"),
-                             {{"impossible_rules_taken", "impossible_rules_taken"}}),
+                             {{"impossible_rules_taken", "impossible_rules_taken"},
+                              {"refuses_once", "impossible_rules_taken"}}),
                    {{},
                     {require(
                          "a station with V(MID) an octet above (V(MRD) - 1) x V(ST) does not start",
+                         [](FfScene& scene) { return !scene.bench.has_started(); }, "impossible_rules_taken"),
+                     wait(50), pn(), silence("impossible_rules_taken", "the station has not started"),
+                     stimulus<FfScene>("its supply goes and comes",
+                                       [](FfScene& scene) {
+                                         scene.bench.set_supply(false);
+                                         scene.bench.set_supply(true);
+                                       }),
+                     require(
+                         "it does not start now either",
                          [](FfScene& scene) { return !scene.bench.has_started(); }, "impossible_rules_taken"),
                      wait(50), pn(), silence("impossible_rules_taken", "the station has not started")}},
                    {.change =

@@ -10,8 +10,8 @@ using fieldbus_dll::FfAddress;
 using fieldbus_dll::FfConfiguration;
 using fieldbus_dll::Priority;
 
-constexpr FfAddress kBuffers = 6;
-constexpr FfAddress kSubscriptions = 10;
+constexpr FfAddress kBuffers = 40;
+constexpr FfAddress kSubscriptions = 70;
 constexpr std::uint8_t kHighNode = 0x81;
 constexpr FfAddress kFarPeer = 0x0001'2230;
 constexpr std::size_t kLongBuffer = 100;
@@ -39,7 +39,8 @@ void expect_refused(FfScene& scene, bool is_taken, const std::string& what, std:
 void expect_no_request_refused(FfScene& scene) {
   FfBench& bench = scene.bench;
   for (const Octets& request : {Octets{0x07, 0x01}, Octets{0x00}, Octets{0x04, 0x00, 0x00, 0x22, 0x30, 0x41},
-                                Octets{0xFF, 0x02, 0x00, 0x00, 0x22, 0x30}})
+                                Octets{0xFF, 0x02, 0x00, 0x00, 0x22, 0x30}, Octets{0x01},
+                                Octets{0x01, 0x02, 0x00, 0x00, 0x22}, Octets{0x02, 0x00, 0x00, 0x21}})
     expect_refused(scene, bench.ask_user_request(request),
                    fmt::format("request {:02X}, which there is not,", request[0]), "unknown_request_taken");
   expect_refused(scene, bench.order_transfer(FfBench::kPeer), "03 of a link master, asked of a device,",
@@ -136,11 +137,13 @@ std::vector<FfCase> ff_request_cases() {
                          "What a station does not do for its user, it refuses, and keeps nothing of it.",
                          own("what is submitted is sent or refused"),
                          {{"unknown_requests_taken", "unknown_request_taken"},
+                          {"short_requests_taken", "unknown_request_taken"},
                           {"orders_taken", "unknown_request_taken"},
                           {"priority_zero_accepted", "unknown_priority_taken"},
                           {"priority_four_accepted", "unknown_priority_taken"}}),
                {{},
-                {FfStep{"requests that there are not, an order for a link master, data of priority 0, 4 and "
+                {FfStep{"requests that there are not, or cut off in their address, an order for a link "
+                        "master, data of priority 0, 4 and "
                         "255, a buffer that is not published",
                         "all are refused", expect_no_request_refused},
                  pt(time_available, 500), used({}, {"", "sent_twice"}), serves()}}),
@@ -175,19 +178,22 @@ std::vector<FfCase> ff_request_cases() {
                                  },
                                  "buffer_wrong")})}},
           {.change = with_long_buffers}),
-      on_chart(must_case("fieldbus_dll/ff_device/publisher/each_of_many_is_published", "FF-13",
-                         "A station publishes all buffers that it is set to.", own("lists of addresses"),
-                         {{"four_buffers", "write_refused"}}),
-               {{}, {FfStep{"six buffers are written, a CD for each", "a DT3 of each", expect_each_buffer}}},
-               {.change = with_many_buffers}),
-      on_chart(must_case("fieldbus_dll/ff_device/publisher/each_of_many_is_delivered", "FF-11",
-                         "A station delivers all buffers to which it has subscribed.",
-                         own("lists of addresses"), {{"eight_subscriptions", "subscription_not_delivered"}}),
-               {{},
-                {FfStep{"a DT3 of each of ten publishers, to which it has subscribed", "all are delivered",
-                        expect_each_subscription},
-                 serves()}},
-               {.change = with_many_buffers}),
+      on_chart(
+          must_case("fieldbus_dll/ff_device/publisher/each_of_many_is_published", "FF-13",
+                    "A station publishes all buffers that it is set to.", own("lists of addresses"),
+                    {{"four_buffers", "write_refused"}, {"thirty_two_buffers", "write_refused"}}),
+          {{}, {FfStep{"forty buffers are written, a CD for each", "a DT3 of each", expect_each_buffer}}},
+          {.change = with_many_buffers}),
+      on_chart(
+          must_case("fieldbus_dll/ff_device/publisher/each_of_many_is_delivered", "FF-11",
+                    "A station delivers all buffers to which it has subscribed.", own("lists of addresses"),
+                    {{"eight_subscriptions", "subscription_not_delivered"},
+                     {"sixty_four_subscriptions", "subscription_not_delivered"}}),
+          {{},
+           {FfStep{"a DT3 of each of seventy publishers, to which it has subscribed", "all are delivered",
+                   expect_each_subscription},
+            serves()}},
+          {.change = with_many_buffers}),
       on_chart(must_case("fieldbus_dll/ff_device/token/what_is_urgent_meanwhile_is_next", "FF-04",
                          "What is submitted during a token is sent in its order, too.",
                          own("what is next is decided before each DT1"),

@@ -115,36 +115,6 @@ class WantsOnePreambleOctet : public IsaDle {
   }
 };
 
-// A receiver that samples with its own clock from the first level on.
-class DoesNotRecoverClock : public IsaDle {
-  using IsaDle::IsaDle;
-  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
-    line::Waveform sampled{reception.start, 2 * rules().link.bit_rate, {}};
-    for (std::int64_t n = 0;; ++n) {
-      const Time middle = kernel::level_time(reception.start, 2 * n + 1, 2 * sampled.rate);
-      if (middle >= reception.end()) break;
-      sampled.levels.append(reception.at(middle) ? 1 : 0, 1);
-    }
-    return IsaDle::heard_in(sampled);
-  }
-};
-
-class WantsExactEdges : public IsaDle {
-  using IsaDle::IsaDle;
-  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
-    const double per_half_bit =
-        static_cast<double>(reception.rate) / (2.0 * static_cast<double>(rules().link.bit_rate));
-    for (std::size_t at = 0; at < reception.levels.size();) {
-      const std::size_t end = reception.levels.end_of_run(at);
-      const double half_bits = static_cast<double>(end - at) / per_half_bit;
-      const double off = half_bits - static_cast<double>(static_cast<std::int64_t>(half_bits + 0.5));
-      if (off > 0.1 || off < -0.1) return {};
-      at = end;
-    }
-    return IsaDle::heard_in(reception);
-  }
-};
-
 // What it drives differs from a frame.
 class FrameOtherwise : public IsaDle {
  public:

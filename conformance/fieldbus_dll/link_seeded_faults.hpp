@@ -100,6 +100,48 @@ class LastOfATransmission : public Station {
 };
 
 template <typename Station>
+class FirstTwoOfATransmission : public Station {
+  using Station::Station;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    std::vector<Arrived> all = Station::heard_in(reception);
+    if (all.size() > 2) all.erase(all.begin() + 2, all.end());
+    return all;
+  }
+};
+
+// A receiver that samples with its own clock from the first level on.
+template <typename Station>
+class DoesNotRecoverClock : public Station {
+  using Station::Station;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    line::Waveform sampled{reception.start, 2 * this->rules().link.bit_rate, {}};
+    for (std::int64_t n = 0;; ++n) {
+      const Time middle = kernel::level_time(reception.start, 2 * n + 1, 2 * sampled.rate);
+      if (middle >= reception.end()) break;
+      sampled.levels.append(reception.at(middle) ? 1 : 0, 1);
+    }
+    return Station::heard_in(sampled);
+  }
+};
+
+template <typename Station>
+class WantsExactEdges : public Station {
+  using Station::Station;
+  std::vector<Arrived> heard_in(const line::Waveform& reception) override {
+    const double per_half_bit =
+        static_cast<double>(reception.rate) / (2.0 * static_cast<double>(this->rules().link.bit_rate));
+    for (std::size_t at = 0; at < reception.levels.size();) {
+      const std::size_t end = reception.levels.end_of_run(at);
+      const double half_bits = static_cast<double>(end - at) / per_half_bit;
+      const double off = half_bits - static_cast<double>(static_cast<std::int64_t>(half_bits + 0.5));
+      if (off > 0.1 || off < -0.1) return {};
+      at = end;
+    }
+    return Station::heard_in(reception);
+  }
+};
+
+template <typename Station>
 class DeafBehind71Minutes : public Station {
   using Station::Station;
   std::vector<Arrived> heard_in(const line::Waveform& reception) override {

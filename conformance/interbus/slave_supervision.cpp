@@ -8,6 +8,9 @@ namespace {
 
 using namespace slave_chart;
 
+kernel::Duration earliest_reset(const interbus::Rules& rules) {
+  return rules.silence_limit - rules.silence_tolerance;
+}
 kernel::Duration latest_reset(const interbus::Rules& rules) {
   return rules.silence_limit + rules.silence_tolerance;
 }
@@ -51,7 +54,7 @@ SlaveStep alive_with_out1() {
 
 void short_silence(SlaveScene& scene) {
   const interbus::Rules& rules = scene.bench.rules();
-  const kernel::Duration silence = rules.silence_limit - rules.silence_tolerance;
+  const kernel::Duration silence = earliest_reset(rules);
   scene.bench.segment().run_until(scene.last + silence);
   expect_no_change(scene.bench, scene.judge, "outputs_lost_before_limit",
                    fmt::format("the line was silent for {} only", kernel::describe(silence)));
@@ -61,7 +64,7 @@ SlaveStep reset_by_silence(std::string_view least, std::string_view most) {
   return {"silence",
           fmt::format("all outputs are 0 between {} and {} after the end of the last telegram", least, most),
           [](SlaveScene& scene) {
-            const kernel::Duration limit = scene.bench.rules().silence_limit;
+            const kernel::Duration earliest = earliest_reset(scene.bench.rules());
             const kernel::Duration latest = latest_reset(scene.bench.rules());
             scene.bench.segment().run_until(scene.last + latest);
             expect_outputs(scene.bench, scene.judge, std::vector<std::uint16_t>(scene.bench.words()),
@@ -70,12 +73,13 @@ SlaveStep reset_by_silence(std::string_view least, std::string_view most) {
             for (const auto& change : changes) {
               const kernel::Duration after = change.when - scene.last;
               const auto sighting = [&] {
-                return Mismatch{.expected = {fmt::format("outputs change {} to {} after the last telegram",
-                                                         kernel::describe(limit), kernel::describe(latest))},
-                                .actual = fmt::format("after {}", kernel::describe(after)),
-                                .time = change.when};
+                return Mismatch{
+                    .expected = {fmt::format("outputs change {} to {} after the last telegram",
+                                             kernel::describe(earliest), kernel::describe(latest))},
+                    .actual = fmt::format("after {}", kernel::describe(after)),
+                    .time = change.when};
               };
-              scene.judge.expect(after >= limit, "outputs_lost_before_limit", sighting);
+              scene.judge.expect(after >= earliest, "outputs_lost_before_limit", sighting);
               scene.judge.expect(after <= latest, "outputs_not_safe_after_limit", sighting);
             }
             if (changes.empty()) return;
@@ -157,7 +161,7 @@ SlaveCase other_limit_case() {
                     "The limit of the silence is the one that the settings of the case say: 10 ms.",
                     sources::own("the silence limit is a setting"),
                     {{"silence_limit_hard_coded", "outputs_not_safe_after_limit"}},
-                    {.steps = {identified(), alive(), reset_by_silence("10.0 ms", "11.0 ms")}},
+                    {.steps = {identified(), alive(), reset_by_silence("9.0 ms", "11.0 ms")}},
                     {.tags = {"timing"},
                      .only_for = for_all({for_outputs(), for_other_settings()}),
                      .needs = {.change_rules = [](interbus::Rules& rules) {
@@ -178,12 +182,13 @@ std::vector<SlaveCase> cases_of_outputs() {
                      {.details = {details::status_coding()}, .tags = {"timing"}, .only_for = for_outputs()}),
           slave_case("supervision/silence_of_26_ms_clears_outputs", "IS-28",
                      "When telegrams stay away for more than 25 ms, the slave takes the interruption for a "
-                     "reset and its outputs go to the safe state. The tolerance of 1 ms is this project's.",
+                     "reset and its outputs go to the safe state. The tolerance of 1 ms, in both directions, "
+                     "is this project's.",
                      away,
                      {{"silence_limit_250_ms", "outputs_not_safe_after_limit"},
                       {"safe_state_500_ms_late", "outputs_not_safe_after_limit"},
                       {"silence_limit_20_ms", "outputs_lost_before_limit"}},
-                     {.steps = {identified(), alive(), reset_by_silence("25.0 ms", "26.0 ms")}},
+                     {.steps = {identified(), alive(), reset_by_silence("24.0 ms", "26.0 ms")}},
                      {.details = {{sources::own("the tolerance of 1 ms"), {"outputs_not_safe_after_limit"}}},
                       .tags = {"timing"},
                       .only_for = for_outputs()}),

@@ -230,8 +230,10 @@ class MovesLate : public valve_bus::Node {
   MovesLate(const valve_bus::NodeConfiguration& configuration, kernel::Duration later)
       : Node(configuration), later_(later) {}
 
- private:
+ protected:
   void actuate(std::uint16_t valves, kernel::Time now) override { move_ = {valves, now + later_}; }
+
+ private:
   kernel::Time next_time() const override {
     return move_ ? std::min(Node::next_time(), move_->second) : Node::next_time();
   }
@@ -253,6 +255,43 @@ TEST(NodeValves, AreTooLateHoweverLate) {
     EXPECT_EQ(result.reason, "valves_too_late") << microseconds;
     ASSERT_FALSE(result.findings.empty());
     EXPECT_THAT(result.findings.front().actual, testing::HasSubstr("after it, to"));
+  }
+}
+
+// The upper eight 0.9 us after the lower ones.
+class MovesByHalves : public MovesLate {
+ public:
+  explicit MovesByHalves(const valve_bus::NodeConfiguration& configuration)
+      : MovesLate(configuration, 900 * kernel::kNanosecond) {}
+
+ private:
+  void actuate(std::uint16_t valves, kernel::Time now) override {
+    Node::actuate(static_cast<std::uint16_t>((std::exchange(before_, valves) & 0xFF00) | (valves & 0x00FF)),
+                  now);
+    MovesLate::actuate(valves, now);
+  }
+  std::uint16_t before_ = 0;
+};
+
+// Each third transmission is lost.
+class LosesThirds final : public fault::Channel {
+  bool pass(const line::Waveform&, line::Waveforms&) override { return ++count_ % 3 == 0; }
+  unsigned count_ = 0;
+};
+
+// All that change within 1 us move at once.
+TEST(NodeValves, MayMoveOneAfterTheOtherUnderBursts) {
+  NodeSetting setting;
+  const std::vector<fault::Stress> stresses{
+      {"losses", 20 * kernel::kMillisecond,
+       [](const fault::StressPlace&) { return std::make_unique<LosesThirds>(); }}};
+  setting.stresses = stresses;
+  setting.make_device = [](const valve_bus::NodeConfiguration& configuration) {
+    return std::make_unique<MovesByHalves>(configuration);
+  };
+  for (const char* one : {"immunity/bursts_move_nothing_by_themselves", "write/drives_the_valves"}) {
+    const judge::CaseResult result = run_on_bench(case_of(std::string("valve_bus/node/") + one), setting);
+    EXPECT_EQ(result.verdict, judge::Verdict::pass) << one << result.reason;
   }
 }
 

@@ -167,7 +167,8 @@ std::span<const std::uint8_t> Peer::receive(milliseconds limit, Clock::time_poin
   Patience patience(process_, limit, begin);
   const auto wait_for = [&](std::size_t octets) {
     while (end_ - begin_ < octets) {
-      if (remaining(patience.until()) == 0 && !patience.goes_on()) {
+      // What has come by then is an answer, also where this process was the one that was held up.
+      if (remaining(patience.until()) == 0 && !has_input() && !patience.goes_on()) {
         // Its descendants may keep the stream open when it has gone.
         if (process_ && process_->has_ended(milliseconds(0)))
           blame(reasons::kCrashed, process_->how_it_ended());
@@ -191,7 +192,10 @@ std::span<const std::uint8_t> Peer::receive(milliseconds limit, Clock::time_poin
 }
 
 bool Peer::has_more() {
-  if (has_read_more()) return true;
+  return has_read_more() || has_input();
+}
+
+bool Peer::has_input() {
   pollfd wait{input(), POLLIN, 0};
   return ::poll(&wait, 1, 0) > 0 && (wait.revents & POLLIN) != 0;
 }

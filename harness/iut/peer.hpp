@@ -58,6 +58,7 @@ class Peer {
   explicit Peer(std::string what) : what_(std::move(what)) {}
 
   void fill(Clock::time_point until);
+  bool has_input();
   void read_log();
   [[noreturn]] void blame_end();
   int input() { return process_ ? process_->from_output().number() : socket_.number(); }

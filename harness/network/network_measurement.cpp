@@ -405,6 +405,34 @@ void add_remarks(measure::Measurement& measurement, const SignalRecord& record,
       kernel::describe(record.stopped_after), record.complaint.empty() ? "" : ": ", record.complaint));
 }
 
+// What no station may do, however fast or slow it is, on a quiet line: words that nobody gave, images of
+// several instants, and pulses that last for many cycles and never arrive.
+void add_what_is_wrong(measure::Measurement& measurement, const SignalRecord& record) {
+  constexpr double kManyCycles = 4;
+  if (record.settings.disturb != nullptr || record.has_stopped) return;
+  Duration longest{};
+  for (const CycleRecord& cycle : record.cycles) {
+    const Distribution& times = cycle.times.in(Phase::quiet);
+    if (!times.is_empty()) longest = std::max(longest, Duration{times.max()});
+  }
+  const measure::Frequency frequency = record.settings.wave.frequency;
+  const bool is_slow =
+      longest > Duration::zero() && kManyCycles * frequency.hertz() < measure::highest_frequency_hz(longest);
+  const auto fail = [&](const std::string& where, const std::string& what) {
+    measurement.failures.push_back(fmt::format("{}{}: {}", measure::describe(frequency), where, what));
+  };
+  for (const PathRecord& path : record.paths) {
+    const measure::EdgeSkew& skew = path.skew;
+    const std::string from = " from " + path.path.name;
+    if (skew.foreign_words > 0)
+      fail(from, fmt::format("{} words that the input never had", skew.foreign_words));
+    if (is_slow && skew.pulses > 0 && skew.lost_pulses == skew.pulses)
+      fail(from, fmt::format("none of {} pulses arrived, though each lasted for many cycles", skew.pulses));
+  }
+  if (record.torn_images > 0)
+    fail("", fmt::format("{} of {} process images are torn", record.torn_images, record.images));
+}
+
 std::optional<SignalRecord> record_until_stopped(Network& network, const measure::SquareWave& wave,
                                                  const MeasurementSettings& settings) {
   if (settings.stop.stop_requested()) return std::nullopt;
@@ -454,6 +482,7 @@ measure::Measurement measure_network(const MakeNetwork& make, const MeasurementS
     const SignalRecord& record = *recorded;
     cycles.add(record);
     add_remarks(measurement, record, settings);
+    add_what_is_wrong(measurement, record);
     for (const PathRecord& path : record.paths) {
       measurement.series.push_back(series_of(record, path));
       if (!path.path.theory) leave_open(measurement, path.path.why_open);

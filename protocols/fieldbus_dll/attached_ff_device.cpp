@@ -121,15 +121,15 @@ bool ServedFfDevice::asked(const Octets& wanted, kernel::Time now) {
   };
   switch (static_cast<FfAsk>(octets[0])) {
     case FfAsk::submit: {
-      if (octets.size() < 2 + kAddress) return false;
+      if (octets.size() < 2 + kAddress) break;
       const auto address = static_cast<FfAddress>(number_at(octets, 2, kAddress));
       return station().submit({static_cast<Priority>(octets[1]), address, rest(2 + kAddress)}, now);
     }
     case FfAsk::write:
-      if (octets.size() < 1 + kAddress) return false;
+      if (octets.size() < 1 + kAddress) break;
       return station().write(static_cast<FfAddress>(number_at(octets, 1, kAddress)), rest(1 + kAddress), now);
     case FfAsk::order_transfer:
-      if (octets.size() != 2) return false;
+      if (octets.size() != 2) break;
       return station().order_transfer(octets[1], now);
   }
   return station().ask(wanted, now);
