@@ -243,16 +243,26 @@ class Campaign {
     if (!folder_.empty()) store(response, done_.tests.back(), done_.tests.size());
   }
 
+  static void take_into(emc::Thresholds& found, const EmcTest& test, const emc::ImmunityResult& result) {
+    if (result.came_up && result.was_disturbed())
+      emc::take(found, test.level.open_circuit_volts(), result.criterion);
+  }
+
   // The tests of the table last longer than probes, and may show what these did not.
   void add_to_search() {
     if (!done_.search) return;
     emc::Thresholds& found = done_.search->thresholds;
-    const std::string before = emc::text_of(found);
+    std::optional<emc::Thresholds>& references = done_.search->references;
+    const auto told = [&] {
+      return emc::text_of(found) +
+             (references ? fmt::format("\nreferences alone: {}", emc::text_of(*references)) : "");
+    };
+    const std::string before = told();
     for (const EmcTest& test : done_.tests) {
-      if (test.result.came_up && test.result.was_disturbed())
-        emc::take(found, test.level.open_circuit_volts(), test.result.criterion);
+      take_into(found, test, test.result);
+      if (test.reference && references) take_into(*references, test, *test.reference);
     }
-    if (const std::string now = emc::text_of(found); now != before)
+    if (const std::string now = told(); now != before)
       session_.terminal.print(fmt::format("with the tests above: {}\n", now));
   }
 

@@ -146,8 +146,9 @@ int measure_protocol(Session& session) {
   if (code != kAllAsExpected && measured.failures.empty() && !measured.implementations.empty()) {
     session.terminal.print(
         "The closed forms are those of the reference stations. Others may be faster or slower within what "
-        "the "
-        "standard allows, so a difference is no failure here, and a row that is open may be one; 'fieldproof "
+        "the\n"
+        "standard allows, so a difference is no failure here, and a row that is open may be one; "
+        "'fieldproof\n"
         "run' judges each station.\n");
     code = kInconclusive;
   }

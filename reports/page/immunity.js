@@ -60,7 +60,7 @@ function balance(tests) {
   const column = (title, cell) => ({title, kind: "number", cell});
   return table("How each exchange ended, and what the criterion rests on", [
     ...whichTest, ...balanceColumns(column, tests),
-    {title: "rests on", kind: "text", cell: ({evidence}) => evidence?.text ?? ""},
+    {title: "rests on", kind: "text", cell: ({evidence, first_wrong}) => [evidence?.text, first_wrong && `the first ${first_wrong}`].filter(Boolean).join("; ")},
     {title: "a longer run could still show (95 %)", kind: "text", cell: longerRun},
   ], tests, "many");
 }
