@@ -49,6 +49,8 @@ class DrivenLine final : public segment::Tap {
   void clear() { waves_.clear(); }
   bool empty() const { return waves_.empty(); }
   std::size_t waves() const { return waves_.size(); }
+  // The end of the last wave; the start of time where there is none.
+  kernel::Time until() const { return waves_.empty() ? kernel::kStart : waves_.back().end(); }
   // What was driven since the last clear, and clears.
   std::vector<line::Waveform> take() { return std::exchange(waves_, {}); }
   // From now on it expects characters of another kind.

@@ -198,6 +198,14 @@ kernel::Time NodeBench::read() {
                                  random_octet()});
 }
 
+// An answer with gaps as long as they may be ends late, and sooner than a delimiter after it nothing may
+// come.
+void NodeBench::await_response_window() {
+  wait(settling_);
+  const kernel::Time is_free = driven_.until() + delimiter() + kernel::kMicrosecond;
+  if (has_driven() && now() < is_free) wait(is_free - now());
+}
+
 void NodeBench::ask() {
   read();
   await_response_window();

@@ -101,7 +101,7 @@ class NodeBench final : public LineBench {
   // A read, and the time for its answer.
   void ask();
   // As long as the IUT may take to act on what it has heard, and to have said it.
-  void await_response_window() { wait(settling_); }
+  void await_response_window();
   // Silence after a write until the next frame may come: a delimiter, or the whole answer of a node that
   // answers writes and a delimiter after it.
   void wait_after_write();

@@ -128,8 +128,12 @@ void UartDriver::put_piece(const Drive& drive, kernel::Time now, kernel::Time ne
   const kernel::Duration longest =
       std::clamp((driven_until_ - driving_since_) / 8, uart_.bits(1), uart_.half_characters(1));
   if (next_call <= now) return;
-  const kernel::Time least = driven_until_ + least_idle() + kernel::kPicosecond;
-  put_idle(drive, std::max(least, std::min(next_call, driven_until_ + longest)));
+  const kernel::Duration shortest = least_idle() + kernel::kPicosecond;
+  // What would be left of the way to the next call has to be a piece as well, or none: what is said then
+  // begins when it says so.
+  const kernel::Time end = driven_until_ + longest;
+  const kernel::Time to = next_call - end <= shortest ? next_call : end;
+  put_idle(drive, std::max(driven_until_ + shortest, to));
 }
 
 }  // namespace fieldproof::line

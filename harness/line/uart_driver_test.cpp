@@ -87,6 +87,23 @@ RC_GTEST_PROP(UartDriver, DrivesFromOnToOffWhatIsSent, (bool is_ahead)) {
   }
 }
 
+// Known when it is to come, and said then: where the pieces before end has no part in it.
+RC_GTEST_PROP(UartDriver, WhatComesAfterIdleBeginsToTheNanosecond, ()) {
+  Uart uart = kUart;
+  uart.bit_rate = *rc::gen::element<std::int64_t>(1'200, 9'600, 62'500, 375'000);
+  OnTheLine line(uart);
+  const auto lead =
+      kernel::Duration{uart.bits(1).count() * *rc::gen::inRange<std::int64_t>(1'000, 20'000) / 1'000};
+  const Time start = kernel::kStart + lead;
+  line.driver().enable(true, kernel::kStart);
+  line.put(kernel::kStart, start);
+  line.run_until(start);
+  line.driver().send(start, 0x55);
+  line.put(start, start + uart.character_time());
+  RC_ASSERT(line.characters().size() == 1U);
+  RC_ASSERT(std::chrono::abs(line.characters()[0].start - start) <= UartDriver::kRounding);
+}
+
 TEST(UartDriver, ThatIsOnAndSilentIsDrivenInPieces) {
   OnTheLine line(kUart);
   EXPECT_EQ(line.driver().next_time(), kernel::kNever);
