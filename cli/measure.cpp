@@ -147,9 +147,8 @@ int measure_protocol(Session& session) {
     session.terminal.print(
         "The closed forms are those of the reference stations. Others may be faster or slower within what "
         "the\n"
-        "standard allows, so a difference is no failure here, and a row that is open may be one; "
-        "'fieldproof\n"
-        "run' judges each station.\n");
+        "standard allows, so a difference is no failure here, and a row that is open may be one;\n"
+        "'fieldproof run' judges each station.\n");
     code = kInconclusive;
   }
   if (code != kAllAsExpected) {

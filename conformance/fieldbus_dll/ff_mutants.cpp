@@ -275,8 +275,6 @@ std::vector<FfRow> ff_reception_rows() {
       {"refuses_on_a_busy_line", "", "refuses its user while others send", mutant<RefusesOnABusyLine>()},
       {"short_requests_taken", "", "takes a submit that ends within its address",
        mutant<ShortRequestsTaken>()},
-      {"cut_to_its_priority", "", "cuts a DT3 to what a DT1 of its priority carries",
-       mutant<CutToItsPriority>()},
       {"long_dt3_unsupported", "", "leaves a DT3 with a long address where it does not support them",
        mutant<LongDt3Unsupported>()},
       {"refuses_once", "", "starts with impossible rules the second time", mutant<RefusesOnce>()},

@@ -7,7 +7,7 @@
 #include "conformance/fieldbus_dll/link_transmission.hpp"
 
 // What is on the line beside a frame: in front of it, without one for long, and while the station sends or is
-// asked by its user; and DT3s that other rules than those of a DT1 hold for.
+// asked by its user.
 namespace fieldproof::conformance {
 namespace {
 
@@ -21,9 +21,6 @@ constexpr std::size_t kLongestData = 256;
 constexpr unsigned kKindsInFront = 4;
 constexpr std::size_t kMoreThanADt1 = 60;
 
-void with_small_data(FfConfiguration& configuration) {
-  configuration.rules.link.most_data = {8, 16, kMoreThanADt1};
-}
 void with_last_node(FfConfiguration& configuration) {
   configuration.node = 0xFF;
 }
@@ -191,19 +188,6 @@ std::vector<FfCase> ff_transmission_cases() {
                          {{"node_ff_is_nobody", "no_probe_response"}}),
                {{}, {pn(), probe_response("no_probe_response")}},
                {.change = with_last_node, .is_live = false}),
-      on_chart(must_case("fieldbus_dll/ff_device/publisher/a_dt3_has_room_for_its_buffer", "FF-39",
-                         "A buffer has as many octets as urgent data, whatever the priority of the CD.",
-                         own("what fits into a buffer"), {{"cut_to_its_priority", "buffer_wrong"}}),
-               {{3, 3},
-                {write(kMoreThanADt1),
-                 send("a CD of each priority, in turn, on a link that carries 8, 16, 60 octets",
-                      [](FfScene& scene) {
-                        Octets octets = scene.bench.cd(FfBench::kPublished);
-                        octets[0] = scene.bench.control(scene.bench.rules().codes.cd, scene.priority());
-                        return octets;
-                      }),
-                 as_written("a DT3 with all 60 octets")}},
-               {.change = with_small_data}),
       on_chart(must_case("fieldbus_dll/ff_device/publisher/a_long_address_needs_no_support", "FF-45",
                          "A station without long addresses delivers a DT3 that has one.",
                          own("long addresses"), {{"long_dt3_unsupported", "subscription_not_delivered"}}),

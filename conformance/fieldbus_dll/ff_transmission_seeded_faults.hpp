@@ -89,17 +89,6 @@ class ShortRequestsTaken : public FfStation {
   bool ask(const Octets& request, Time) override { return !request.empty() && request.front() == 1; }
 };
 
-// A DT3 is given the room that a DT1 of its priority has.
-class CutToItsPriority : public FfStation {
-  using FfStation::FfStation;
-  Octets written(const FfDlpdu& dlpdu) const override {
-    FfDlpdu cut = dlpdu;
-    if (cut.type == FfType::dt3)
-      cut.data.resize(std::min(cut.data.size(), fieldbus_dll::most_data(rules().link, cut.priority)));
-    return FfStation::written(cut);
-  }
-};
-
 class LongDt3Unsupported : public FfStation {
   using FfStation::FfStation;
   void on_dlpdu(const FfDlpdu& dlpdu, const Place& place) override {

@@ -416,8 +416,12 @@ void add_what_is_wrong(measure::Measurement& measurement, const SignalRecord& re
     if (!times.is_empty()) longest = std::max(longest, Duration{times.max()});
   }
   const measure::Frequency frequency = record.settings.wave.frequency;
-  const bool is_slow =
-      longest > Duration::zero() && kManyCycles * frequency.hertz() < measure::highest_frequency_hz(longest);
+  // Where no closed form says how often a word is sampled, nobody knows what may be lost.
+  const auto lasts_for_many = [&](const CopiedPath& path) {
+    if (!path.theory || longest == Duration::zero()) return false;
+    const Duration cycle = std::max(longest, path.theory->cycle);
+    return kManyCycles * frequency.hertz() < measure::highest_frequency_hz(cycle);
+  };
   const auto fail = [&](const std::string& where, const std::string& what) {
     measurement.failures.push_back(fmt::format("{}{}: {}", measure::describe(frequency), where, what));
   };
@@ -426,7 +430,7 @@ void add_what_is_wrong(measure::Measurement& measurement, const SignalRecord& re
     const std::string from = " from " + path.path.name;
     if (skew.foreign_words > 0)
       fail(from, fmt::format("{} words that the input never had", skew.foreign_words));
-    if (is_slow && skew.pulses > 0 && skew.lost_pulses == skew.pulses)
+    if (lasts_for_many(path.path) && skew.pulses > 0 && skew.lost_pulses == skew.pulses)
       fail(from, fmt::format("none of {} pulses arrived, though each lasted for many cycles", skew.pulses));
   }
   if (record.torn_images > 0)
