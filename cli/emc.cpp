@@ -147,7 +147,7 @@ class Campaign {
   std::string complaint_on_quiet_line() const {
     if (!references_) return {};
     try {
-      return emc::complaint_on_quiet_line(*network_->make(done_.seed), done_.seed);
+      return emc::complaint_on_quiet_line(*network_->make(done_.seed), done_.seed, interruption_.token());
     } catch (const iut::Misbehaviour&) {
       return {};
     }

@@ -350,7 +350,8 @@ std::string emc_line(const EmcTest& test) {
     line +=
         fmt::format("    seen by the search, in a test of {}\n", kernel::describe(test.of_search->duration));
   line += evidence_lines(result);
-  if (!result.first_wrong_text.empty()) line += fmt::format("    the first {}\n", result.first_wrong_text);
+  if (!result.first_wrong_text.empty())
+    line += fmt::format("    the first {}\n", reports::escaped_line(result.first_wrong_text));
   if (!result.complaint.empty()) line += fmt::format("    {}\n", reports::escaped_line(result.complaint));
   if (result.complaint.empty() && !result.was_disturbed())
     line += "    no burst met a receiver: this shows nothing\n";

@@ -145,9 +145,8 @@ int measure_protocol(Session& session) {
   int code = measured.failures.empty() ? code_of(measure::agreement(measured)) : kFailed;
   if (code != kAllAsExpected && measured.failures.empty() && !measured.implementations.empty()) {
     session.terminal.print(
-        "The closed forms are those of the reference stations. Others may be faster or slower within what "
-        "the\n"
-        "standard allows, so a difference is no failure here, and a row that is open may be one;\n"
+        "The closed forms are those of the reference stations. Others may be faster or slower within\n"
+        "what the standard allows, so a difference is no failure here, and a row that is open may be one;\n"
         "'fieldproof run' judges each station.\n");
     code = kInconclusive;
   }

@@ -35,7 +35,8 @@ std::string end_text(const EmcRun& run) {
       "criterion {}: {}\n", emc::name(result.criterion),
       result.decided_by.empty() ? emc::text_of(result.criterion) : std::string_view(result.decided_by));
   if (!result.complaint.empty()) text += fmt::format("  {}\n", reports::escaped_line(result.complaint));
-  if (!result.first_wrong_text.empty()) text += fmt::format("  the first {}\n", result.first_wrong_text);
+  if (!result.first_wrong_text.empty())
+    text += fmt::format("  the first {}\n", reports::escaped_line(result.first_wrong_text));
   return text;
 }
 

@@ -63,12 +63,14 @@ class Run final : private network::ExchangeWatcher {
   std::string complaint_on_quiet_line() {
     if (!come_up()) {
       const std::string complaint(network_.complaint());
+      if (is_stopped()) return "";
       return complaint.empty() ? "it does not come up" : complaint;
     }
     statistics_.begin();
     const bool is_delivered = delivers_all(most_exchanges_waited());
     statistics_.end();
     network_.end();
+    if (is_stopped()) return "";
     if (const auto wrong = statistics_.first_wrong()) return text_of(*wrong);
     return is_delivered ? "" : "not all words that were sent arrived";
   }
@@ -366,9 +368,10 @@ std::string_view text_of(Criterion criterion) {
   return "";
 }
 
-std::string complaint_on_quiet_line(network::Network& network, std::uint64_t seed) {
+std::string complaint_on_quiet_line(network::Network& network, std::uint64_t seed, std::stop_token stop) {
   ImmunitySettings settings;
   settings.seed = seed;
+  settings.stop = std::move(stop);
   return Run(network, settings).complaint_on_quiet_line();
 }
 

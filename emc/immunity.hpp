@@ -87,8 +87,8 @@ struct ImmunityResult {
 };
 
 // Comes up and delivers each signal once without anything on its lines. Empty, or what is wrong: then bursts
-// would be blamed for it. `network` has not been started.
-std::string complaint_on_quiet_line(network::Network& network, std::uint64_t seed);
+// would be blamed for it. Asked to stop, it has no complaint. `network` has not been started.
+std::string complaint_on_quiet_line(network::Network& network, std::uint64_t seed, std::stop_token stop = {});
 
 // `network` has not been started.
 ImmunityResult run_immunity(network::Network& network, const LineResponse& response,

@@ -60,6 +60,25 @@ FfStep nothing_delivered(std::string reason) {
       std::move(reason));
 }
 
+FfStep as_written() {
+  return answer<FfScene>(
+      "a DT3 with all that was written", "not_published",
+      [](const FfScene& scene, const DrivenDlpdu& one) {
+        return is_dt3(scene.bench, one) && buffer_in(one).data == scene.written.back();
+      },
+      "buffer_wrong");
+}
+
+FfStep published_delivered() {
+  return require(
+      "it is delivered",
+      [](FfScene& scene) {
+        const auto& all = scene.bench.user().published;
+        return all.size() == 1 && all[0].data == scene.data;
+      },
+      "subscription_not_delivered");
+}
+
 FfStep write(std::size_t size) {
   return stimulus<FfScene>(
       fmt::format("the user writes {} octets into its buffer", size), [size](FfScene& scene) {

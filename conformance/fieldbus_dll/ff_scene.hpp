@@ -59,6 +59,10 @@ FfStep probe_response(const std::string& reason, const std::string& reason_wrong
 // What the tester sent last to the user.
 FfStep delivered(std::string reason);
 FfStep nothing_delivered(std::string reason);
+// The answer is a DT3 with what was written last.
+FfStep as_written();
+// The DT3 that the tester sent last is delivered, and nothing else was.
+FfStep published_delivered();
 // Of the first buffer.
 FfStep write(std::size_t size);
 
