@@ -1,16 +1,15 @@
 #include "campaign/rank_slots.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
 
 #include "harness/kernel/error.hpp"
+#include "harness/kernel/host_name.hpp"
 
 namespace fieldproof::campaign {
 namespace {
@@ -31,11 +30,6 @@ constexpr char kAbandon = 'a';
 constexpr char kEnd = 'e';
 constexpr char kResult = 'r';
 constexpr char kSeen = 's';
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "a host without a name";
-}
 
 std::string_view content_of(const std::string& message) {
   return std::string_view(message).substr(1);
@@ -135,7 +129,7 @@ void RankSlots::abandon() {
 void serve_as_rank(Ranks& ranks, std::size_t slots, const std::string& program) {
   // What mpirun sends to all of them is for rank 0 to decide.
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, SIG_IGN);
-  const ordered_json hello = {{"host", host_name()}, {"program", program}};
+  const ordered_json hello = {{"host", kernel::host_name()}, {"program", program}};
   ranks.send(0, kHello + hello.dump());
   LocalSlots own(slots);
   while (true) {

@@ -70,7 +70,7 @@ class Campaign {
     done_.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
     done_.duration = stored_.duration = virtual_time_from(settings);
     stored_.bursts.profile = done_.profile;
-    stored_.worst = static_cast<emc::Criterion>(settings.choice("worst"));
+    done_.worst = stored_.worst = static_cast<emc::Criterion>(settings.choice("worst"));
     done_.has_bursts = wants_bursts(settings);
     for (const char* option : {"search", "sensitivity"}) {
       if (!done_.has_bursts && settings.is_set(option) && is_typed(settings, option))

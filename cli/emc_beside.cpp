@@ -47,7 +47,7 @@ std::string beside_text(const EmcCampaign& campaign) {
     ++device.tests;
     if (test.result.criterion > test.reference->criterion) ++device.worse;
     if (test.result.criterion < test.reference->criterion) ++device.better;
-    if (reference_json(test.result) == reference_json(*test.reference)) ++device.same;
+    if (is_as_references(test)) ++device.same;
     device.add(test.result);
     references.add(*test.reference);
   }
@@ -64,6 +64,10 @@ std::string beside_text(const EmcCampaign& campaign) {
              device.same, device.tests, device.worse, device.better, "", "exposed", "rejected", "wrong",
              "longest run", "stops") +
          row("with yours", device) + row("references alone", references);
+}
+
+bool is_as_references(const EmcTest& test) {
+  return reference_json(test.result) == reference_json(*test.reference);
 }
 
 nlohmann::ordered_json reference_json(const emc::ImmunityResult& reference) {

@@ -17,6 +17,8 @@ std::shared_ptr<const conformance::PlannedNetwork> plan_references(
 
 // How references did in each test of a campaign, added up; empty where none ran.
 std::string beside_text(const EmcCampaign& campaign);
+// What references differ in from who was tested is not only when bursts met them.
+bool is_as_references(const EmcTest& test);
 nlohmann::ordered_json reference_json(const emc::ImmunityResult& reference);
 
 }  // namespace fieldproof::cli

@@ -149,6 +149,30 @@ double cycle_time_us(const emc::ImmunityResult& result) {
                              : static_cast<double>(quiet.quantile(0.5)));
 }
 
+// Windows in which nothing was wrong are left out.
+ordered_json immunity_course_json(const emc::ImmunityCourse& course) {
+  const auto seconds = [](kernel::Duration time) { return static_cast<double>(time.count()) / 1e12; };
+  const kernel::Duration width = course.length() / emc::ImmunityCourse::kWindows;
+  ordered_json windows = ordered_json::array();
+  for (std::size_t n = 0; n < course.windows().size(); ++n) {
+    const emc::ImmunityCourse::Window& one = course.windows()[n];
+    if (one.rejected + one.accepted_wrong + one.stops == 0) continue;
+    windows.push_back({{"from_s", seconds(static_cast<std::int64_t>(n) * width)},
+                       {"exchanges", one.exchanges},
+                       {"rejected", one.rejected},
+                       {"accepted_wrong", one.accepted_wrong},
+                       {"stops", one.stops}});
+  }
+  ordered_json bursts = ordered_json::array();
+  for (const measure::Band& band : course.bursts())
+    bursts.push_back(
+        {{"from_s", seconds(band.from)}, {"to_s", seconds(band.to)}, {"count", band.disturbances}});
+  return {{"length_s", seconds(course.length())},
+          {"window_s", seconds(width)},
+          {"windows", std::move(windows)},
+          {"bursts", std::move(bursts)}};
+}
+
 ordered_json result_json(const emc::ImmunityResult& result) {
   return {{"came_up", result.came_up},
           {"complaint", result.complaint},
@@ -166,6 +190,7 @@ ordered_json result_json(const emc::ImmunityResult& result) {
           {"bursts", result.bursts},
           {"evidence", evidence_json(emc::evidence_of(result))},
           {"ledger", ledger_json(result.counts)},
+          {"course", immunity_course_json(result.course)},
           {"line", line_json(result.line)}};
 }
 
@@ -340,12 +365,9 @@ std::string emc_line(const EmcTest& test) {
   const std::string where = fmt::format("{:<14} {:>8} {:>3}", test.level.text(),
                                         emc::text_of(test.repetition), emc::text_of(test.polarity));
   if (!result.came_up) return where + does_not_come_up(result);
-  const std::string columns = burst_columns(result);
-  std::string line = where + columns;
-  if (test.reference && test.reference->came_up) {
-    const std::string theirs = burst_columns(*test.reference);
-    if (theirs != columns) line += fmt::format("{:<27}", "  references alone") + theirs;
-  }
+  std::string line = where + burst_columns(result);
+  if (test.reference && test.reference->came_up && !is_as_references(test))
+    line += fmt::format("{:<27}", "  references alone") + burst_columns(*test.reference);
   if (test.of_search)
     line +=
         fmt::format("    seen by the search, in a test of {}\n", kernel::describe(test.of_search->duration));
@@ -489,6 +511,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                            {"threshold_volts", has_bursts ? campaign.threshold_volts : 0},
                            {"unverified", unverified_of(campaign)},
                            {"criteria", std::move(criteria)},
+                           {"worst_allowed", emc::name(campaign.worst)},
                            {"seed", std::to_string(campaign.seed)},
                            {"is_complete", campaign.is_complete},
                            {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},

@@ -57,7 +57,8 @@ struct EmcCampaign {
   std::string network;
   std::string implementations;  // "ref", or the options as they were given
   emc::Profile profile;
-  double threshold_volts = 0;  // the lowest setting at which an output can be wrong at all
+  double threshold_volts = 0;                // the lowest setting at which an output can be wrong at all
+  emc::Criterion worst = emc::Criterion::b;  // that is no failure
   std::uint64_t seed = 0;
   kernel::Duration duration{};
   std::vector<EmcTest> tests;

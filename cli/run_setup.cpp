@@ -2,10 +2,8 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <chrono>
 #include <ctime>
@@ -15,6 +13,7 @@
 #include "cli/implementations.hpp"
 #include "cli/pics_file.hpp"
 #include "cli/pics_roles.hpp"
+#include "harness/kernel/host_name.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
 
@@ -41,11 +40,6 @@ std::string hash_text(std::string_view content) {
   Hash hash;
   hash.add(content);
   return fmt::format("{:016x}", hash.value());
-}
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
 }
 
 }  // namespace
@@ -162,7 +156,7 @@ reports::Manifest manifest_of(const Session& session, unsigned jobs) {
   reports::Manifest manifest;
   manifest.build_type = build_type();
   manifest.compiler = compiler();
-  manifest.host = host_name();
+  manifest.host = kernel::host_name();
   manifest.arguments = session.arguments;
   manifest.started = utc_now();
   manifest.jobs = jobs;
@@ -188,8 +182,12 @@ kernel::Duration virtual_time_from(const Settings& settings) {
   return duration->count() * kernel::kMillisecond;
 }
 
+std::string utc_text(std::time_t when) {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(when));
+}
+
 std::string utc_now() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  return utc_text(std::time(nullptr));
 }
 
 }  // namespace fieldproof::cli

@@ -1,6 +1,7 @@
 // From the settings of a call to what the suites are given and what the reports say about it.
 #pragma once
 
+#include <ctime>
 #include <span>
 #include <string>
 #include <string_view>
@@ -48,6 +49,7 @@ std::string suite_version(const conformance::Catalogue& catalogue);
 // 16 hexadecimal digits over the content; empty for an empty name.
 std::string file_hash(const std::string& file);
 
-std::string utc_now();  // "2026-11-21T05:18:28Z"
+std::string utc_text(std::time_t when);  // "2026-11-21T05:18:28Z"
+std::string utc_now();
 
 }  // namespace fieldproof::cli

@@ -288,10 +288,11 @@ std::optional<std::chrono::milliseconds> Settings::duration(std::string_view nam
   const std::string written = text(name);
   if (written.empty()) return std::nullopt;
   if (const auto time = duration_of(written)) return time;
-  refuse(name, fmt::format(
-                   "'{}' is no time of whole milliseconds; write a number with ms, s, min or h, for example "
-                   "90s or 1.5 min",
-                   written));
+  refuse(
+      name,
+      fmt::format("'{}' is no time of whole milliseconds, from 1 ms on; write a number with ms, s, min or h, "
+                  "for example 90s or 1.5 min",
+                  written));
 }
 
 std::size_t Settings::choice(std::string_view name) const {

@@ -1,10 +1,20 @@
 #include "cli/stored_document.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <charconv>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "campaign/embedded_schemas.hpp"
+#include "cli/build_info.hpp"
 #include "cli/embedded_schemas.hpp"
+#include "cli/run_setup.hpp"
+#include "harness/kernel/error.hpp"
+#include "harness/kernel/host_name.hpp"
+#include "harness/kernel/untrusted_text.hpp"
 #include "reports/embedded_schemas.hpp"
 #include "reports/results.hpp"
 #include "reports/run_directory.hpp"
@@ -21,6 +31,23 @@ std::string command_of(const Session& session, const std::string& verb, const st
   return command;
 }
 
+// Now, or what a build that must be reproducible has set for all of its files.
+std::string date_of_document() {
+  constexpr const char* kVariable = "SOURCE_DATE_EPOCH";
+  const char* const set = std::getenv(kVariable);
+  if (set == nullptr || *set == '\0') return utc_now();
+  const std::string_view text = set;
+  std::uint32_t seconds = 0;
+  const auto [end, error] = std::from_chars(text.begin(), text.end(), seconds);
+  if (error != std::errc{} || end != text.end()) {
+    throw kernel::Error(kernel::ErrorKind::usage,
+                        fmt::format("{}: '{}' is no number of seconds since 1970; unset it, or write for "
+                                    "example 1764201600",
+                                    kVariable, kernel::escaped_line(text)));
+  }
+  return utc_text(seconds);
+}
+
 }  // namespace
 
 void write_document(const Session& session, const std::string& verb, const std::string& json,
@@ -29,6 +56,8 @@ void write_document(const Session& session, const std::string& verb, const std::
   using nlohmann::ordered_json;
   ordered_json document = ordered_json::parse(json);
   document["command"] = command_of(session, verb, more);
+  document["made"] = {
+      {"tool_version", tool_version()}, {"date", date_of_document()}, {"host", kernel::host_name()}};
   reports::write_text_file(session.settings.text("json"),
                            document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }

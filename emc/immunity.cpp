@@ -86,6 +86,7 @@ class Run final : private network::ExchangeWatcher {
     first_trouble_.reset();
     on_ = result_.on = segment_.now();
     off_ = on_ + settings_.duration;
+    result_.course = ImmunityCourse(on_, settings_.duration);
     couple(response);
     statistics_.begin();
     suffer();
@@ -170,6 +171,7 @@ class Run final : private network::ExchangeWatcher {
       first_stop_ = segment_.now();
     }
     ++result_.stops;
+    result_.course.note_stop(segment_.now());
     start();
   }
 
@@ -210,6 +212,7 @@ class Run final : private network::ExchangeWatcher {
   void on_exchange(const Exchange& exchange) override {
     const std::uint64_t refused = statistics_.counts().refused;
     statistics_.on_exchange(exchange, effect_on_line());
+    result_.course.take(statistics_.counts(), exchange.end);
     const bool is_served = exchange.outcome == network::Outcome::served;
     if (is_served && exchange.kind == network::ExchangeKind::data && network_.state() == State::exchanging) {
       is_exchanging_ = true;
@@ -265,6 +268,8 @@ class Run final : private network::ExchangeWatcher {
   void sum_up() {
     statistics_.end();
     result_.counts = statistics_.counts();
+    result_.course.take(result_.counts, segment_.now());
+    result_.course.set_bursts(bands());
     result_.first_wrong = statistics_.first_wrong();
     if (result_.first_wrong) result_.first_wrong_text = text_of(*result_.first_wrong);
     for_each_statistics([&](const BurstStatistics& one) {
@@ -274,6 +279,13 @@ class Run final : private network::ExchangeWatcher {
     if (clamp_) result_.bursts = clamp_->bursts_between(on_, off_);
     result_.had_a_burst = !clamp_ || clamp_->phase_during(on_, off_) == measure::Phase::burst;
     result_.criterion = criterion();
+  }
+
+  // Nearer to each other than half a window they are not told apart.
+  std::vector<measure::Band> bands() {
+    if (!clamp_) return {};
+    return measure::bands_between([this](Time after) { return clamp_->burst_after(after); }, on_,
+                                  settings_.duration, settings_.duration / (2 * ImmunityCourse::kWindows));
   }
 
   Criterion criterion() {

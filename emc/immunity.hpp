@@ -12,6 +12,7 @@
 #include "emc/burst_channel.hpp"
 #include "emc/coupling.hpp"
 #include "emc/generator.hpp"
+#include "emc/immunity_course.hpp"
 #include "harness/fault/channel.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/kernel/random.hpp"
@@ -81,6 +82,7 @@ struct ImmunityResult {
   std::uint64_t bursts = 0;  // that came; 0 on a textbook's channel
   BurstStatistics line;      // sums over them; of a textbook's channel only the transmissions
   std::vector<CycleTimes> cycles;
+  ImmunityCourse course;
 
   // Where not, a criterion says nothing.
   bool was_disturbed() const { return receivers > 0 && had_a_burst; }

@@ -54,6 +54,36 @@ TEST(Immunity, AShieldBondedAllAroundLetsNothingThroughFrom1000To4500V) {
   }
 }
 
+// Windows add up to the statistics, and a window with an error has bursts in it or follows one.
+TEST(Immunity, ErrorsOverTimeAddUpAndComeWithBursts) {
+  for (const int volts : {60, 250, 2000}) {
+    const ImmunityResult result = under("A", settings_of(Level::free(volts)));
+    ImmunityCourse::Window sum;
+    for (const ImmunityCourse::Window& one : result.course.windows()) {
+      sum.exchanges += one.exchanges;
+      sum.rejected += one.rejected;
+      sum.accepted_wrong += one.accepted_wrong;
+      sum.stops += one.stops;
+    }
+    EXPECT_EQ(sum.exchanges, result.counts.sent) << volts;
+    EXPECT_EQ(sum.rejected, result.counts.refused) << volts;
+    EXPECT_EQ(sum.accepted_wrong, result.counts.wrong_exchanges) << volts;
+    EXPECT_EQ(sum.stops, result.stops) << volts;
+    std::uint64_t bursts = 0;
+    for (const measure::Band& band : result.course.bursts()) {
+      EXPECT_LT(band.from, band.to);
+      EXPECT_LE(band.to, result.course.length());
+      bursts += band.disturbances;
+    }
+    EXPECT_EQ(bursts, result.bursts) << volts;
+    const auto width = result.course.length() / ImmunityCourse::kWindows;
+    const auto first = std::ranges::find_if(
+        result.course.windows(), [](const auto& one) { return one.rejected + one.accepted_wrong > 0; });
+    ASSERT_NE(first, result.course.windows().end()) << volts;
+    EXPECT_GE((first - result.course.windows().begin() + 1) * width, result.course.bursts().front().from);
+  }
+}
+
 TEST(Immunity, AnUnshieldedLineFailsAtLevelOneAndRecovers) {
   for (const Repetition repetition : {Repetition::khz_5, Repetition::khz_100}) {
     const ImmunityResult result = under("A", settings_of(Level::standard(PortKind::signal, 1), repetition));

@@ -29,7 +29,8 @@ judge::Verdict counted_verdict(const judge::CaseResult& result) {
 }
 
 judge::Verdict headline(const Run& run) {
-  judge::Verdict heaviest = judge::Verdict::none;
+  // What was not judged may fail.
+  judge::Verdict heaviest = run.is_complete() ? judge::Verdict::none : judge::Verdict::inconclusive;
   for (const judge::CaseResult& result : run.cases) heaviest = std::max(heaviest, counted_verdict(result));
   return heaviest;
 }

@@ -24,6 +24,9 @@ TEST(Results, HeadlineIsTheHeaviestVerdict) {
   reports::Run run;
   run.cases = {sample_case("a", Verdict::pass), sample_case("b", Verdict::not_applicable)};
   EXPECT_EQ(headline(run), Verdict::pass);
+  // What was not judged may fail.
+  run.identity.incomplete_because = "interrupted";
+  EXPECT_EQ(headline(run), Verdict::inconclusive);
 }
 
 TEST(Results, ReproduceCommandIsForAShell) {

@@ -66,7 +66,8 @@ inline void Call::become_program(int out, int err) const {
   words.push_back(const_cast<char*>(program.c_str()));
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  std::vector<std::string> lines = {"PATH=/usr/bin:/bin", "TERM=xterm"};
+  // With it, equal calls write equal documents.
+  std::vector<std::string> lines = {"PATH=/usr/bin:/bin", "TERM=xterm", "SOURCE_DATE_EPOCH=1764201600"};
   for (const auto& [name, value] : environment) lines.push_back(name + "=" + value);
   std::vector<char*> variables;
   for (std::string& line : lines) variables.push_back(line.data());

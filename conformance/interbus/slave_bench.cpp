@@ -291,13 +291,17 @@ void SlaveBench::send() {
 }
 
 void SlaveBench::send_back(bool on_branch) {
-  clear_views();
-  sent_at_ = now();
   line::Waveform wave{now(), rules().bit_rate, {}};
   std::swap(wave.levels, train_.levels());
+  send_back(on_branch, wave);
+  std::swap(wave.levels, train_.levels());
+}
+
+void SlaveBench::send_back(bool on_branch, line::Waveform& wave) {
+  clear_views();
+  sent_at_ = wave.start = now();
   const kernel::Time end = wave.end();
   drive_return(on_branch, wave);
-  std::swap(wave.levels, train_.levels());
   segment().run_until(end + settling_);
 }
 
@@ -340,16 +344,28 @@ void SlaveBench::drive_at_receiver(line::Waveform& wave) {
   segment().run_until(end + settling_);
 }
 
-void SlaveBench::drive_at_receiver(const line::Levels& levels, std::size_t cut) {
+void SlaveBench::drive_at_receiver(const line::Levels& levels, std::span<const std::size_t> cuts) {
   keep_way_alive();
   clear_views();
   sent_at_ = now();
   const line::Waveform whole{now(), rules().bit_rate, levels};
-  line::Waveform first{whole.start, whole.rate, levels.slice(0, cut)};
-  line::Waveform second{whole.time_of(cut), whole.rate, levels.slice(cut, levels.size() - cut)};
-  ring_.link_to(position_).drive(first);
-  ring_.link_to(position_).drive(second);
+  for (std::size_t n = 0; n <= cuts.size(); ++n) {
+    const std::size_t begin = n == 0 ? 0 : cuts[n - 1];
+    const std::size_t end = n == cuts.size() ? levels.size() : cuts[n];
+    line::Waveform part{whole.time_of(begin), whole.rate, levels.slice(begin, end - begin)};
+    ring_.link_to(position_).drive(part);
+  }
   segment().run_until(whole.end() + settling_);
+}
+
+void SlaveBench::drive_until_lost(line::Waveform& wave) {
+  keep_way_alive();
+  clear_views();
+  sent_at_ = wave.start = now();
+  const kernel::Time end = wave.end() + ring_.link_to(position_).delay();
+  ring_.link_to(position_).drive(wave);
+  segment().run_until(end);
+  set_power(false);
 }
 
 void SlaveBench::drive_return(bool on_branch, line::Waveform& wave) {

@@ -112,8 +112,9 @@ class SlaveBench final : public CaseBench, private segment::Station {
   std::span<const std::uint8_t> id_octets(std::uint16_t control, std::span<const std::uint16_t> behind = {});
   // Sends the train now, and runs until everything has come back. Clears the views before.
   void send();
-  // The same on the line that comes back from the station after OUT1 or OUT2.
+  // The same on the line that comes back from the station after OUT1 or OUT2; and this waveform, now.
   void send_back(bool on_branch);
+  void send_back(bool on_branch, line::Waveform& wave);
 
   // ---- faults at the IUT's receiver ----
   fault::ScriptedChannel& channel() { return channel_; }
@@ -126,8 +127,10 @@ class SlaveBench final : public CaseBench, private segment::Station {
   // Drives the IUT's incoming line itself and runs until it has answered. Clears the views before; the start
   // is set to now. After other stations it may send status telegrams through the ring first.
   void drive_at_receiver(line::Waveform& wave);
-  // The same with these levels in two transmissions without a gap between them.
-  void drive_at_receiver(const line::Levels& levels, std::size_t cut);
+  // The same with these levels in several transmissions without a gap between them, which begin at these.
+  void drive_at_receiver(const line::Levels& levels, std::span<const std::size_t> cuts);
+  // The same, but the supply goes when the waveform ends.
+  void drive_until_lost(line::Waveform& wave);
   // Drives the line that comes back from the station after OUT1 or OUT2, now, beside whatever else is driven.
   void drive_return(bool on_branch, line::Waveform& wave);
   // A whole data cycle as the station in front of the IUT would send it, alone in the ring.

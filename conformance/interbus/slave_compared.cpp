@@ -95,6 +95,23 @@ std::vector<Commands> each_fault_of_an_id_cycle() {
   return each_fault(SlaveWord::id);
 }
 
+// Each two telegrams without their stop level, and a level of the data flipped besides.
+std::vector<Commands> two_faults_of_a_data_cycle() {
+  constexpr std::uint32_t kStop = TrainWriter::kStopLevel;
+  constexpr std::uint32_t kData = 6;
+  std::vector<Commands> all;
+  const unsigned units = vocabulary().words[static_cast<std::size_t>(SlaveWord::data)].units;
+  for (std::uint32_t first = 0; first < units; ++first) {
+    for (std::uint32_t second = 0; second < units; ++second) {
+      SequenceCommand faulty = command(SlaveWord::data);
+      faulty.faults.push_back({SequenceFaultKind::flip, first, first < second ? kStop : kData});
+      faulty.faults.push_back({SequenceFaultKind::flip, second, kStop});
+      all.push_back({faulty});
+    }
+  }
+  return all;
+}
+
 // What leaves something behind.
 std::vector<SequenceCommand> events() {
   return {command(SlaveWord::data),
@@ -126,7 +143,10 @@ std::vector<SequenceCommand> events() {
           command(SlaveWord::silence, {{0, 4}}),
           command(SlaveWord::kept_alive),
           command(SlaveWord::power),
-          command(SlaveWord::glitch)};
+          command(SlaveWord::glitch),
+          command(SlaveWord::cut),
+          command(SlaveWord::lost_in_a_telegram),
+          command(SlaveWord::returned_glitch)};
 }
 
 std::vector<Commands> one_after_another() {
@@ -177,6 +197,17 @@ std::vector<Commands> within_a_reset() {
                        command(SlaveWord::kept_alive, {{0, second}})});
       }
     }
+  }
+  return all;
+}
+
+// A right ID cycle that ends a little before the end of that time, and one after it.
+std::vector<Commands> at_the_end_of_a_reset() {
+  std::vector<Commands> all;
+  for (const std::int64_t side : {3, 4}) {
+    for (const std::int64_t orders : {0, 1, 2})
+      all.push_back({command(SlaveWord::right_id, {{0, 4}}), command(SlaveWord::kept_alive, {{0, side}}),
+                     command(SlaveWord::right_id, {{0, orders}}), command(SlaveWord::data)});
   }
   return all;
 }
@@ -270,6 +301,53 @@ std::vector<Commands> each_cut() {
   return all;
 }
 
+// Cut anywhere, with what follows it; in three; without the stop level at the cut; lost with the supply.
+std::vector<Commands> other_cuts() {
+  std::vector<Commands> all;
+  for (std::int64_t telegram = 0; telegram < 14; ++telegram) {
+    for (const std::int64_t level : {1, 3, 7, 12}) {
+      const GivenNumbers at{{0, telegram}, {1, level}};
+      all.push_back({command(SlaveWord::cut, at)});
+      all.push_back({command(SlaveWord::lost_in_a_telegram, at), id(0)});
+      for (const std::int64_t levels : {1, 2, 5, 12, 30})
+        all.push_back({command(SlaveWord::three_parts, {{0, telegram}, {1, level}, {3, levels}})});
+    }
+    all.push_back({command(SlaveWord::cut_without_stop, {{0, telegram}})});
+  }
+  return all;
+}
+
+// Glitches between telegrams, and on the ways back.
+std::vector<Commands> other_glitches() {
+  std::vector<Commands> all;
+  for (std::int64_t telegram = 0; telegram < 14; ++telegram)
+    for (const std::int64_t eighths : {1, 2, 3})
+      all.push_back({command(SlaveWord::glitch_within, {{0, telegram}, {2, eighths}})});
+  for (const std::int64_t out2 : {0, 1})
+    for (const std::int64_t eighths : {1, 2, 3})
+      all.push_back({command(SlaveWord::returned_glitch, {{0, out2}, {1, eighths}})});
+  return all;
+}
+
+std::vector<Commands> returned_edges_at_both_limits() {
+  std::vector<Commands> all;
+  for (const std::int64_t out2 : {0, 1}) {
+    for (const std::int64_t longer : {-3, 3}) {
+      for (const std::int64_t per_mille : {-10, 10})
+        all.push_back(
+            {command(SlaveWord::returned_pulses, {{0, out2}, {1, 0x55}, {2, longer}, {3, per_mille}})});
+    }
+  }
+  return all;
+}
+
+std::vector<Commands> clock_at_the_inputs() {
+  return {{command(SlaveWord::clock)}};
+}
+std::vector<Commands> other_signs_of_life() {
+  return {{command(SlaveWord::kept_alive_without_stop)}};
+}
+
 struct Share {
   std::vector<Commands> (*family)();
   std::size_t quick;
@@ -347,6 +425,18 @@ void change_to_long(interbus::Rules& rules) {
   rules.frame_check = "CRC-16/KERMIT";
 }
 
+// Minutes: the times of a sequence are longer than 32 bits of microseconds.
+void change_to_minutes(interbus::Rules& rules) {
+  rules.silence_limit = 700 * kernel::kSecond;
+  rules.silence_tolerance = 2 * kernel::kSecond;
+}
+
+// Not whole milliseconds.
+void change_to_parts_of_milliseconds(interbus::Rules& rules) {
+  rules.silence_limit = 5'500 * kernel::kMicrosecond;
+  rules.silence_tolerance = 100 * kernel::kMicrosecond;
+}
+
 constexpr std::uint16_t kCodeOfMany = 0x1903;
 // As many words as a ring may have.
 void change_to_many_words(interbus::Rules& rules) {
@@ -388,7 +478,9 @@ std::vector<SlaveCase> compared_as_usual() {
   const std::string after = " after a data cycle with both interfaces on; then cycles that show the state.";
   return {
       compared("each_value_of_each_word", "Each word of sequences with each boundary value," + after,
-               {{"interface_switches_inside_cycle", "telegram_not_passed"}}, each_of({{each_value, 160}})),
+               {{"interface_switches_inside_cycle", "telegram_not_passed"},
+                {"takes_half_a_status_word", "octet_wrong"}},
+               each_of({{each_value, 160}})),
       compared("each_fault_of_a_data_cycle", "A data cycle with a level flipped or a telegram lost," + after,
                {{"clears_outputs_on_rejected_cycle", "outputs_wrong"}},
                each_of({{each_fault_of_a_data_cycle, 36}})),
@@ -398,7 +490,7 @@ std::vector<SlaveCase> compared_as_usual() {
                {{"message_without_error", "octet_wrong"}}, each_of({{one_after_another, 40}})),
       compared("around_a_reset",
                "All that leaves something behind, before and after silence or a loss of supply," + after,
-               {{"latches_late", "outputs_at_another_time"}, {"keeps_all_without_supply", "telegram_added"}},
+               {{"latches_late", "outputs_at_another_time"}, {"keeps_all_without_supply", "octet_wrong"}},
                each_of({{around_a_reset, 120}})),
       compared("within_a_cycle", "Something between a cycle whose end is lost and that end," + after,
                {{"check_not_reset_between_cycles", "octet_wrong"}}, each_of({{within_a_cycle, 90}})),
@@ -410,6 +502,41 @@ std::vector<SlaveCase> compared_as_usual() {
                {{"reset_ends_outgoing_reset", "octet_wrong"}}, silence_in_a_reset),
       compared("each_cut_of_a_cycle", "A data cycle in two transmissions without a gap," + after,
                {{"loses_the_rest_of_a_cut_telegram", "outputs_wrong"}}, each_of({{each_cut, 24}})),
+      compared("two_faults_of_a_data_cycle",
+               "A data cycle with two telegrams without a stop level, or one and a wrong level," + after,
+               {{"second_missing_stop_takes_the_error_back", "octet_wrong"}},
+               each_of({{two_faults_of_a_data_cycle, 60}})),
+      compared(
+          "other_cuts_of_a_cycle",
+          "A data cycle whose transmission ends within a telegram, alone or as the supply goes; in three "
+          "transmissions; cut where a stop level is missing," +
+              after,
+          {{"drops_a_cut_telegram", "outputs_wrong"}}, each_of({{other_cuts, 60}})),
+      compared("other_glitches",
+               "A low pulse that is no start level between the telegrams of a cycle, and on the ways back," +
+                   after,
+               {{"start_bit_not_validated", "outputs_wrong"},
+                {"takes_glitches_on_the_way_back", "telegram_added"}},
+               each_of({{other_glitches, 24}})),
+      compared("returned_edges_at_both_limits",
+               "Telegrams come back at 1 % beside the bit rate whose edges lie 15 % of a bit beside their "
+               "places," +
+                   after,
+               {{"samples_late_on_the_way_back", "octet_wrong"}},
+               [](SlaveBench& bench, CaseJudge& judge) {
+                 bench.require_line_interface();
+                 each_of({{returned_edges_at_both_limits, 8}})(bench, judge);
+               }),
+      compared("inputs_of_the_start_level", "A clock ticks at all inputs while data cycles come," + after,
+               {{"samples_a_telegram_late", "inputs_of_another_instant"}},
+               each_of({{clock_at_the_inputs, 1}})),
+      compared("telegrams_without_stop_are_signs_of_life",
+               "Nothing but status telegrams without a stop level beyond the limit of silence," + after,
+               {{"without_stop_no_sign_of_life", "outputs_wrong"}}, each_of({{other_signs_of_life, 1}})),
+      compared("at_the_end_of_a_reset_of_the_outgoing_bus",
+               "ID cycles that end 3/16 of the silence tolerance before and after the time of control_reset,"
+               " then data cycles.",
+               {{"outgoing_reset_a_quarter_short", "octet_wrong"}}, each_of({{at_the_end_of_a_reset, 6}})),
       compared("edges_at_both_limits",
                "A data cycle at 1 % beside the bit rate whose edges lie 15 % of a bit beside their places," +
                    after,
@@ -425,14 +552,21 @@ std::vector<SlaveCase> compared_as_usual() {
 }
 
 std::vector<SlaveCase> compared_elsewhere() {
-  return {compared("other_codings", "The same with each coding another one.",
-                   {{"final_xor_hard_coded", "octet_wrong"}}, some_of_all(), change_each_coding),
-          compared("short_times", "The same with short delays and a short silence.",
-                   {{"delays_four_bits", "passed_at_another_time"}}, some_of_all(), change_to_short),
-          compared("long_times", "The same with long delays and a long silence.",
-                   {{"latches_5_ms_late", "outputs_at_another_time"}}, some_of_all(), change_to_long),
-          compared("many_words", "The same with 255 words.", {{"loses_input_words_above_16", "octet_wrong"}},
-                   each_of({{each_value, 8, 60}}), change_to_many_words, kCodeOfMany)};
+  return {
+      compared("other_codings", "The same with each coding another one.",
+               {{"final_xor_hard_coded", "octet_wrong"}}, some_of_all(), change_each_coding),
+      compared("short_times", "The same with short delays and a short silence.",
+               {{"delays_four_bits", "passed_at_another_time"}}, some_of_all(), change_to_short),
+      compared("long_times", "The same with long delays and a long silence.",
+               {{"latches_5_ms_late", "outputs_at_another_time"}}, some_of_all(), change_to_long),
+      compared("times_of_minutes", "Silences and resets with a silence limit of 700 s.",
+               {{"counts_microseconds_in_32_bits", "outputs_wrong"}},
+               each_of({{around_a_reset, 16}, {at_the_end_of_a_reset, 2}}), change_to_minutes),
+      compared("parts_of_milliseconds", "Silences and resets with a silence limit of 5.5 ms, to 0.1 ms.",
+               {{"silence_limit_in_whole_milliseconds", "outputs_at_another_time"}},
+               each_of({{around_a_reset, 16}, {at_the_end_of_a_reset, 2}}), change_to_parts_of_milliseconds),
+      compared("many_words", "The same with 255 words.", {{"loses_input_words_above_16", "octet_wrong"}},
+               each_of({{each_value, 8, 60}}), change_to_many_words, kCodeOfMany)};
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ constexpr std::int64_t kLate = 24;  // of these
 
 void SamplesLate::receive(segment::PortIndex port, const line::Waveform& reception) {
   told_ = reception.start;
-  if (port != interbus::kFromUpstream) return Slave::receive(port, reception);
+  if ((port != interbus::kFromUpstream) != on_the_way_back_) return Slave::receive(port, reception);
   const std::int64_t bit_rate = rules().bit_rate;
   const auto factor = static_cast<std::size_t>(
       std::max<std::int64_t>(1, (kFinePerBit * bit_rate + reception.rate / 2) / reception.rate));
@@ -102,6 +102,34 @@ void SamplesLate::receive(segment::PortIndex port, const line::Waveform& recepti
 
 void SamplesLate::change(line::Waveform& wave) {
   wave.start = std::max(told_, wave.start - kernel::levels_duration(kLate, rules().bit_rate * kFinePerBit));
+}
+
+void TakesGlitchesOnTheWayBack::receive(segment::PortIndex port, const line::Waveform& reception) {
+  if (port == interbus::kFromUpstream) return Slave::receive(port, reception);
+  const auto bit = static_cast<std::size_t>(reception.rate / rules().bit_rate);
+  line::Waveform widened = reception;
+  std::size_t low = 0;
+  for (std::size_t n = 0; n < reception.levels.size(); ++n) {
+    if (!reception.levels[n]) {
+      ++low;
+      continue;
+    }
+    if (low > 0 && 2 * low < bit) {
+      for (std::size_t more = 0; more < bit - low; ++more) widened.levels.set(n + more, false);
+    }
+    low = 0;
+  }
+  Slave::receive(port, widened);
+}
+
+void DropsACutTelegram::receive(segment::PortIndex port, const line::Waveform& reception) {
+  if (port != interbus::kFromUpstream) return Slave::receive(port, reception);
+  finder_.receive(reception, [](const line::Waveform&, const line::Telegram&) {});
+  const kernel::Time cut = finder_.pending_from();
+  line::Waveform whole = reception;
+  for (std::size_t n = 0; n < whole.levels.size(); ++n)
+    if (whole.time_of(n) >= cut) whole.levels.set(n, true);
+  Slave::receive(port, whole);
 }
 
 void LosesTheRestOfACutTelegram::receive(segment::PortIndex port, const line::Waveform& reception) {

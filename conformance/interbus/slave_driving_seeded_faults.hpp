@@ -90,9 +90,10 @@ class DoesNotRetime : public ChangesWhatItDrives {
 // Its clock starts a quarter of a bit after the edge; what it passes on leaves as early as if it did not.
 class SamplesLate : public ChangesWhatItDrives {
  public:
-  explicit SamplesLate(const SlaveConfiguration& configuration)
+  explicit SamplesLate(const SlaveConfiguration& configuration, bool on_the_way_back = false)
       : ChangesWhatItDrives(configuration),
-        finder_(line::shared_telegram_code(configuration.rules.telegram), configuration.rules.bit_rate) {}
+        finder_(line::shared_telegram_code(configuration.rules.telegram), configuration.rules.bit_rate),
+        on_the_way_back_(on_the_way_back) {}
   void receive(segment::PortIndex port, const line::Waveform& reception) override;
   void on_time(kernel::Time now) override {
     told_ = now;
@@ -102,7 +103,26 @@ class SamplesLate : public ChangesWhatItDrives {
  private:
   void change(line::Waveform& wave) override;
   line::TelegramReceiver finder_;
+  bool on_the_way_back_;
   kernel::Time told_{};
+};
+
+// Takes a low pulse of any length for a start level where telegrams come back.
+class TakesGlitchesOnTheWayBack : public Slave {
+  using Slave::Slave;
+  void receive(segment::PortIndex port, const line::Waveform& reception) override;
+};
+
+// A telegram that its transmission cuts is idle to it.
+class DropsACutTelegram : public Slave {
+ public:
+  explicit DropsACutTelegram(const SlaveConfiguration& configuration)
+      : Slave(configuration),
+        finder_(line::shared_telegram_code(configuration.rules.telegram), configuration.rules.bit_rate) {}
+  void receive(segment::PortIndex port, const line::Waveform& reception) override;
+
+ private:
+  line::TelegramReceiver finder_;
 };
 
 // What goes on with a telegram that the transmission before has cut is idle to it.

@@ -152,6 +152,39 @@ class StopBitNotChecked : public Slave {
   bool is_telegram_valid(const line::Telegram&) const override { return true; }
 };
 
+// Keeps its error in a bit that each missing stop level turns over.
+class SecondMissingStopTakesTheErrorBack : public Slave {
+  using Slave::Slave;
+  bool is_telegram_valid(const line::Telegram& telegram) const override {
+    if (telegram.is_stop_missing()) ++missing_;
+    return Slave::is_telegram_valid(telegram);
+  }
+  std::uint8_t status_octet_to_send(std::uint8_t received, std::uint8_t mark, bool own_error) const override {
+    return Slave::status_octet_to_send(received, mark, own_error && !is_taken_back());
+  }
+  bool accepts_cycle(bool own_check_good, bool upstream_clean) const override {
+    return Slave::accepts_cycle(own_check_good || is_taken_back(), upstream_clean);
+  }
+  void on_cycle_end(kernel::Time) override { missing_ = 0; }
+  bool is_taken_back() const { return missing_ > 0 && missing_ % 2 == 0; }
+  mutable unsigned missing_ = 0;
+};
+
+// Looks at the high octet of the status word for the marks of others.
+class TakesHalfAStatusWord : public Slave {
+  using Slave::Slave;
+  std::uint8_t status_octet_to_send(std::uint8_t received, std::uint8_t mark, bool own_error) const override {
+    high_ = low_;
+    low_ = received;
+    return Slave::status_octet_to_send(received, mark, own_error);
+  }
+  bool accepts_cycle(bool own_check_good, bool) const override {
+    return own_check_good && high_ == rules().status_clean >> 8;
+  }
+  mutable unsigned high_ = 0;
+  mutable std::uint8_t low_ = 0;
+};
+
 // Marks a cycle with a missing stop level, and reports nothing.
 class TellsNoMissingStop : public Slave {
   using Slave::Slave;

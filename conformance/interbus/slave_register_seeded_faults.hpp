@@ -45,6 +45,14 @@ class TearsBetweenInputWords : public Slave {
   void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) override;
 };
 
+// When the first telegram has come whole.
+class SamplesATelegramLate : public Slave {
+  using Slave::Slave;
+  void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) override {
+    Slave::sample_inputs(when + kernel::levels_duration(line::kDataTelegramLevels, rules().bit_rate), octets);
+  }
+};
+
 class SamplesWithPreviousCycle : public Slave {
   using Slave::Slave;
   void sample_inputs(kernel::Time when, std::span<std::uint8_t> octets) override {

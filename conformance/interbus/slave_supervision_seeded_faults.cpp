@@ -2,6 +2,15 @@
 
 namespace fieldproof::conformance::slave_seeded_faults {
 
+void WithoutStopNoSignOfLife::receive(segment::PortIndex port, const line::Waveform& reception) {
+  if (port == interbus::kFromUpstream) {
+    line::shared_telegram_code(rules().telegram)
+        .decode(reception.levels, 0,
+                [&](const line::Telegram& telegram) { is_stop_missing_ = telegram.is_stop_missing(); });
+  }
+  Slave::receive(port, reception);
+}
+
 void InterfaceSwitchesInsideCycle::on_control_octet(kernel::Time when) {
   const auto octets = register_octets();
   const auto word = static_cast<std::uint16_t>(octets[0] << 8 | octets[1]);

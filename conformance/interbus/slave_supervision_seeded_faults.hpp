@@ -21,6 +21,27 @@ class SilenceCountsDataOnly : public Slave {
   }
 };
 
+// A telegram without its stop level is none to its supervision.
+class WithoutStopNoSignOfLife : public Slave {
+  using Slave::Slave;
+  void receive(segment::PortIndex port, const line::Waveform& reception) override;
+  kernel::Time sign_of_life(kernel::Time last_telegram, kernel::Time) const override {
+    return is_stop_missing_ ? life_ : life_ = last_telegram;
+  }
+  bool is_stop_missing_ = false;
+  mutable kernel::Time life_ = kNoTelegram;
+};
+
+// Its clock stands still to its supervision once it has counted 32 bits of microseconds.
+class CountsMicrosecondsIn32Bits : public Slave {
+  using Slave::Slave;
+  kernel::Time sign_of_life(kernel::Time last_telegram, kernel::Time) const override {
+    constexpr kernel::Duration kMost = (std::int64_t{1} << 32) * kernel::kMicrosecond;
+    constexpr kernel::Duration kForEver = 100 * kMost;
+    return last_telegram.time_since_epoch() < kMost ? last_telegram : last_telegram + kForEver;
+  }
+};
+
 // Takes what comes back from after its outgoing interfaces for a sign of life of the master.
 class KeptAliveByReturns : public Slave {
   using Slave::Slave;

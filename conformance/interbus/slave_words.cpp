@@ -10,6 +10,7 @@
 
 #include "conformance/interbus/moved_edges.hpp"
 #include "conformance/interbus/slave_expect.hpp"
+#include "conformance/interbus/slave_transmissions.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 using Numbers = std::span<const std::int64_t>;
 
 constexpr std::array<std::int64_t, 7> kLikelyWords{0x0000, 0xFFFF, 0x0001, 0x8000, 0x7F80, 0xA55A, 0xFF00};
-constexpr std::array<std::int64_t, 6> kErrors{0x0000, 0x0001, 0x0080, 0x0100, 0x8000, 0xFFFF};
+constexpr std::array<std::int64_t, 8> kErrors{0x0000, 0x0001, 0x0080, 0x0100, 0x8000, 0x00FF, 0xFF00, 0xFFFF};
 constexpr std::array<std::int64_t, 10> kOctetsInFront{-3, -1, 0, 1, 2, 3, 5, 7, 60, 300};
 constexpr std::array<std::int64_t, 5> kGaps{0, 1, 2, 13, 100};
 constexpr std::array<std::int64_t, 3> kTimes{1, 2, 3};
@@ -29,6 +30,7 @@ constexpr std::array<std::int64_t, 2> kOffRates{-60, 60};
 constexpr std::array<std::int64_t, 2> kOffPulses{-3, 3};
 constexpr std::array<std::int64_t, 3> kRightRates{0, -10, 10};
 constexpr std::array<std::int64_t, 5> kCuts{1, 2, 4, 7, 12};
+constexpr std::array<std::int64_t, 4> kPartLevels{1, 3, 11, 20};
 // Of a control word, whatever their places are.
 constexpr std::int64_t kRemoteOff = 1;
 constexpr std::int64_t kBranchOff = 2;
@@ -44,6 +46,10 @@ SequenceNumber slave_word(std::string_view name, std::int64_t simple) {
 }
 SequenceNumber truth(std::string_view name, std::int64_t simple) {
   return {name, 0, 1, simple};
+}
+
+std::vector<SequenceNumber> cut_numbers() {
+  return {{"telegram", 0, 13, 0}, {"level", 1, 12, 6, kCuts}, slave_word("word", 0x1234)};
 }
 
 // What data and ID cycles have in common.
@@ -68,14 +74,6 @@ std::uint8_t header_of(Numbers numbers) {
 }
 
 // ---- what is sent ----
-
-// As many as the slave has, the two of the command in turn.
-std::vector<std::uint16_t> words_of(const SlaveBench& bench, std::int64_t even, std::int64_t odd) {
-  std::vector<std::uint16_t> words;
-  for (unsigned n = 0; n < bench.words(); ++n)
-    words.push_back(static_cast<std::uint16_t>(n % 2 == 0 ? even : odd));
-  return words;
-}
 
 // The octets in front of the slave's own and those of the way, the nearest to these as they usually are.
 std::vector<std::uint8_t> with_front(std::span<const std::uint8_t> octets, std::int64_t in_front) {
@@ -103,7 +101,7 @@ void append_data(SlaveBench& bench, const SequenceCommand& command) {
   // The words turn round from cycle to cycle, so that each one is seen.
   for (std::int64_t n = 0; n < numbers[6]; ++n) {
     const std::int64_t turn = n % 2 == 0 ? 0 : 0xFFFF;
-    const auto words = words_of(bench, numbers[0] ^ turn, numbers[1] ^ turn);
+    const auto words = words_in_turn(bench, numbers[0] ^ turn, numbers[1] ^ turn);
     append_cycle(bench, false, bench.data_octets(words, kBehind), numbers.subspan(2));
   }
 }
@@ -132,7 +130,7 @@ void send_good(SlaveBench& bench, Numbers numbers) {
     bench.begin();
     for (const std::int64_t end = std::min(numbers[2], done + kTrain); done < end; ++done) {
       const std::int64_t turn = done % 2 == 0 ? 0 : 0xFFFF;
-      const auto words = words_of(bench, numbers[0] ^ turn, numbers[1] ^ turn);
+      const auto words = words_in_turn(bench, numbers[0] ^ turn, numbers[1] ^ turn);
       append_cycle(bench, false, bench.data_octets(words, kBehind), kNothingWrong);
     }
     bench.send();
@@ -142,7 +140,7 @@ void send_good(SlaveBench& bench, Numbers numbers) {
 // A cycle that is right but for the stop level of a telegram.
 void append_no_stop(SlaveBench& bench, const SequenceCommand& command) {
   const Numbers numbers = command.numbers;
-  const auto words = words_of(bench, numbers[0], ~numbers[0] & 0xFFFF);
+  const auto words = words_in_turn(bench, numbers[0], ~numbers[0] & 0xFFFF);
   const std::array<std::int64_t, 4> shape{0, 0, kUsualFront, numbers[2]};
   append_cycle(bench, false, bench.data_octets(words, kBehind), shape);
   const CyclePlace& cycle = bench.train().cycles().back();
@@ -203,11 +201,18 @@ std::uint16_t clock_of_octets(kernel::Time when) {
   return static_cast<std::uint16_t>((when.time_since_epoch() / kernel::kMicrosecond & 0xFF) * 0x0101);
 }
 
-// The words that came back in each cycle but the first, which ends what was sent before it.
+// Where its own register leaves first.
+LineView& first_way_out(SlaveBench& bench) {
+  if (!bench.branch().data_telegrams().empty()) return bench.branch();
+  return bench.remote().data_telegrams().empty() ? bench.out() : bench.remote();
+}
+
+// The words that left in each cycle but the first, which ends what was sent before it.
 std::vector<std::vector<std::uint16_t>> samples_of(SlaveBench& bench) {
   std::vector<std::vector<std::uint16_t>> all;
+  LineView& view = first_way_out(bench);
   for (std::size_t n = 1; n < bench.train().cycles().size(); ++n) {
-    const std::optional<CycleOnLine> out = bench.cycle_on(bench.out(), n);
+    const std::optional<CycleOnLine> out = bench.cycle_on(view, n);
     if (!out) return {};
     all.emplace_back();
     for (unsigned word = 0; word < bench.words(); ++word) all.back().push_back(out->word(2 * word));
@@ -223,6 +228,18 @@ std::string_view wrong_sample(std::span<const std::uint16_t> words) {
     if (ticks < -1 || ticks > 1) return "input_words_not_of_one_instant";
   }
   return {};
+}
+
+// Ticks between the start level of the first telegram and what stood in the word, which is looked at there:
+// from a quarter of a bit before it to a bit after.
+bool is_of_start_level(SlaveBench& bench, std::size_t n, std::uint16_t word) {
+  const std::optional<CycleOnLine> in = bench.cycle_on(bench.in(), n);
+  if (!in) return true;
+  const kernel::Time start = bench.in().start_of(in->telegrams[0]);
+  const auto tick = [](kernel::Time when) { return static_cast<std::uint8_t>(clock_of_octets(when)); };
+  const std::uint8_t first = tick(start - bench.bits(1) / 4);
+  const std::uint8_t last = tick(start + bench.bits(1));
+  return static_cast<std::uint8_t>(word - first) <= static_cast<std::uint8_t>(last - first);
 }
 
 // ---- what happens besides ----
@@ -277,8 +294,10 @@ std::vector<SequenceWord> slave_words() {
        2},
       {"kept_alive",
        "status telegrams, counted from the last ID cycle: 0 for half of the time of a reset of the outgoing "
-       "bus, 1 nearly to its end, 2 beyond it",
-       {{"how_long", 0, 2, 2}}},
+       "bus, 1 nearly to its end, 2 beyond it, 3 and 4 until a right ID cycle that follows would end a "
+       "little "
+       "before its end, or after it",
+       {{"how_long", 0, 4, 2}}},
       {.word = "power",
        .meaning = "the supply goes and comes back",
        .numbers = {{"milliseconds", 1, 100, 1, kMilliseconds}},
@@ -320,7 +339,44 @@ std::vector<SequenceWord> slave_words() {
        .meaning = "a right ID cycle; orders: 1 OUT1 off, 2 OUT2 off, 4 reset, 8 acknowledge",
        .numbers = {{"orders", 0, 15, 0}, {"reserved", 0, 0xFFFF, 0, kErrors}},
        .weight = 4},
-      {.word = "clock", .meaning = "right data cycles while a clock ticks at all inputs", .numbers = {}}};
+      {.word = "clock", .meaning = "right data cycles while a clock ticks at all inputs", .numbers = {}},
+      {.word = "cut",
+       .meaning = "a right data cycle whose transmission ends in front of a level of a telegram",
+       .numbers = cut_numbers()},
+      {.word = "lost_in_a_telegram",
+       .meaning = "the same, and there the supply goes and comes back",
+       .numbers = cut_numbers(),
+       .is_loss = true},
+      {.word = "three_parts",
+       .meaning = "a right data cycle in three transmissions without a gap; the second has so many levels",
+       .numbers =
+           [] {
+             std::vector<SequenceNumber> numbers = cut_numbers();
+             numbers.push_back({"levels", 1, 40, 3, kPartLevels});
+             return numbers;
+           }()},
+      {.word = "cut_without_stop",
+       .meaning = "a data cycle that is right but for the stop level with which the first of its two "
+                  "transmissions ends; no gap follows",
+       .numbers = {{"telegram", 0, 12, 0}, slave_word("word", 0x1234)}},
+      {.word = "glitch_within",
+       .meaning = "a right data cycle with a low pulse that is no start level after a telegram",
+       .numbers = {{"telegram", 0, 13, 0}, slave_word("word", 0x1234), {"eighths", 1, 3, 3}}},
+      {.word = "returned_glitch",
+       .meaning = "a low pulse that is no start level comes back after OUT1, or OUT2",
+       .numbers = {truth("out2", 0), {"eighths", 1, 3, 3}}},
+      {.word = "returned_pulses",
+       .meaning =
+           "data telegrams come back after OUT1, or OUT2, their low pulses so many twentieths of a bit "
+           "longer, so many per mille faster than their bit rate",
+       .numbers = {truth("out2", 0),
+                   {"octet", 0, 0xFF, 0x80},
+                   {"longer", -3, 3, 3, kOffPulses},
+                   {"per_mille", -10, 10, 0, kRightRates, true}},
+       .is_no_frame = true},
+      {.word = "kept_alive_without_stop",
+       .meaning = "beyond the limit of silence status telegrams whose stop level is missing, and no others",
+       .numbers = {}}};
 }
 
 void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
@@ -335,7 +391,8 @@ void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
     case SlaveWord::status:
       return send(command, append_status);
     case SlaveWord::inputs:
-      return twins_.each([&](SlaveBench& one) { one.set_inputs(words_of(one, numbers[0], numbers[1])); });
+      return twins_.each(
+          [&](SlaveBench& one) { one.set_inputs(words_in_turn(one, numbers[0], numbers[1])); });
     case SlaveWord::plugs:
       return twins_.each([&](SlaveBench& one) {
         one.set_bridge(false, numbers[0] != 0 && twins_.bench().pics().supports("remote_interface"));
@@ -369,6 +426,31 @@ void SlaveActs::act(const SequenceCommand& command, CaseJudge& judge) {
       return send(command, append_right_id);
     case SlaveWord::clock:
       return show_clock(judge);
+    case SlaveWord::cut:
+    case SlaveWord::lost_in_a_telegram: {
+      const bool loses_supply = static_cast<SlaveWord>(command.word) == SlaveWord::lost_in_a_telegram;
+      twins_.each(
+          [&](SlaveBench& one) { drive_cut_cycle(one, numbers[2], {numbers[0], numbers[1]}, loses_supply); });
+      return note_what_came(false);
+    }
+    case SlaveWord::three_parts:
+      twins_.each(
+          [&](SlaveBench& one) { drive_in_three(one, numbers[2], {numbers[0], numbers[1]}, numbers[3]); });
+      return note_what_came(false);
+    case SlaveWord::cut_without_stop:
+      twins_.each([&](SlaveBench& one) { drive_cut_at_missing_stop(one, numbers[1], numbers[0]); });
+      return note_what_came(false);
+    case SlaveWord::glitch_within:
+      twins_.each([&](SlaveBench& one) { drive_glitch_within(one, numbers[1], numbers[0], numbers[2]); });
+      return note_what_came(false);
+    case SlaveWord::returned_glitch:
+      return twins_.each([&](SlaveBench& one) { return_glitch(one, numbers[0] != 0, numbers[1]); });
+    case SlaveWord::returned_pulses:
+      if (!twins_.bench().has_line_interface()) return;
+      return twins_.each(
+          [&](SlaveBench& one) { return_pulses(one, numbers[0] != 0, numbers[1], numbers[2], numbers[3]); });
+    case SlaveWord::kept_alive_without_stop:
+      return keep_alive_without_stop();
   }
 }
 
@@ -387,7 +469,7 @@ void SlaveActs::drive_at_rate(const SequenceCommand& command, CaseJudge& judge) 
   const auto word = static_cast<std::uint16_t>(command.numbers[1]);
   twins_.each([&](SlaveBench& one) {
     const std::int64_t rate = one.rules().bit_rate * (kPerMille + command.numbers[0]) / kPerMille;
-    line::Waveform wave{one.now(), rate, one.direct_data_cycle(words_of(one, word, word), 2)};
+    line::Waveform wave{one.now(), rate, one.direct_data_cycle(words_in_turn(one, word, word), 2)};
     one.drive_at_receiver(wave);
   });
   judge.expect(!left_clean(twins_.bench()), "rate_beyond_limit_accepted",
@@ -396,8 +478,7 @@ void SlaveActs::drive_at_rate(const SequenceCommand& command, CaseJudge& judge) 
   lose_supply(kernel::kMillisecond);
 }
 
-// When a slave looks at its inputs is its own affair, so nothing is compared but that it does so once in a
-// cycle, where both references do.
+// Each word tells when it was looked at: all of a cycle at one instant, that of its first start level.
 void SlaveActs::show_clock(CaseJudge& judge) {
   constexpr unsigned kCycles = 4;
   constexpr std::array<std::int64_t, 2> kWordsOfClock{0x1234, 0xFEDC};
@@ -407,7 +488,8 @@ void SlaveActs::show_clock(CaseJudge& judge) {
     one.channel().on_next();
     one.begin();
     for (unsigned n = 0; n < kCycles; ++n)
-      append_cycle(one, false, one.data_octets(words_of(one, kWordsOfClock[0], kWordsOfClock[1]), kBehind),
+      append_cycle(one, false,
+                   one.data_octets(words_in_turn(one, kWordsOfClock[0], kWordsOfClock[1]), kBehind),
                    kNothingWrong);
     one.send();
     const auto samples = samples_of(one);
@@ -416,10 +498,14 @@ void SlaveActs::show_clock(CaseJudge& judge) {
           std::ranges::all_of(samples, [](const auto& words) { return wrong_sample(words).empty(); });
   });
   note_what_came(false);
-  for (const auto& words : samples_of(twins_.bench())) {
-    const std::string_view reason = is_certain ? wrong_sample(words) : std::string_view{};
-    judge.expect(reason.empty(), reason, "words of one instant of the clock at the inputs",
-                 fmt::format("{:04X}", fmt::join(words, " ")));
+  const auto samples = is_certain ? samples_of(twins_.bench()) : decltype(samples_of(twins_.bench())){};
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const std::string_view reason = wrong_sample(samples[n]);
+    const std::string words = fmt::format("{:04X}", fmt::join(samples[n], " "));
+    judge.expect(reason.empty(), reason, "words of one instant of the clock at the inputs", words);
+    judge.expect(samples[n].empty() || is_of_start_level(twins_.bench(), n + 1, samples[n].front()),
+                 "inputs_of_another_instant",
+                 "the inputs as they stood at the start level of the first telegram, to a bit", words);
   }
   twins_.each([](SlaveBench& one) {
     for (unsigned word = 0; word < one.words(); ++word) one.terminals().set_signal(word, {});
@@ -431,11 +517,11 @@ void SlaveActs::drive_parts(const SequenceCommand& command) {
   const Numbers numbers = command.numbers;
   twins_.each([&](SlaveBench& one) {
     const auto gap = static_cast<std::size_t>(numbers[3]);
-    const line::Levels levels =
-        one.direct_data_cycle(words_of(one, numbers[2], ~numbers[2] & 0xFFFF), static_cast<unsigned>(gap));
+    const line::Levels levels = one.direct_data_cycle(words_in_turn(one, numbers[2], ~numbers[2] & 0xFFFF),
+                                                      static_cast<unsigned>(gap));
     const std::size_t pitch = line::kDataTelegramLevels + gap;
     const std::size_t telegram = static_cast<std::size_t>(numbers[0]) % (levels.size() / pitch);
-    one.drive_at_receiver(levels, telegram * pitch + static_cast<std::size_t>(numbers[1]));
+    one.drive_at_receiver(levels, std::array{telegram * pitch + static_cast<std::size_t>(numbers[1])});
   });
   note_what_came(false);
 }
@@ -446,7 +532,7 @@ void SlaveActs::drive_pulses(const SequenceCommand& command, CaseJudge& judge) {
   const auto word = static_cast<std::uint16_t>(command.numbers[1]);
   twins_.each([&](SlaveBench& one) {
     const line::Levels levels =
-        with_moved_edges(one.direct_data_cycle(words_of(one, word, ~word & 0xFFFF), 2),
+        with_moved_edges(one.direct_data_cycle(words_in_turn(one, word, ~word & 0xFFFF), 2),
                          [&](bool falls) { return falls ? 0 : command.numbers[0]; });
     const std::int64_t rate = one.rules().bit_rate * (kPerMille + command.numbers[2]) / kPerMille;
     line::Waveform wave{one.now(), rate * kEdgesPerBit, levels};
@@ -504,12 +590,48 @@ void SlaveActs::keep_alive(std::int64_t how_long) {
   const interbus::Rules& rules = twins_.bench().rules();
   const kernel::Duration whole = rules.silence_limit + rules.silence_tolerance;
   const kernel::Duration beside = rules.silence_tolerance / 2 + twins_.bench().bits(60);
-  const std::array<kernel::Duration, 3> lengths{whole / 2, whole - beside, whole + beside};
+  // Certain is the end of that time to an eighth of the tolerance.
+  const kernel::Duration near = 3 * rules.silence_tolerance / 16 + twins_.bench().bits(1);
+  const kernel::Duration before_id = whole - time_of_right_id();
+  const std::array<kernel::Duration, 5> lengths{whole / 2, whole - beside, whole + beside, before_id - near,
+                                                before_id + near};
   const kernel::Time until = last_id_cycle_ + lengths.at(static_cast<std::size_t>(how_long));
+  const kernel::Duration step =
+      std::min(rules.silence_limit / 3, (until - twins_.bench().now()) / 4 + kernel::kPicosecond);
   while (twins_.bench().now() < until) {
-    const kernel::Time next = std::min(until, twins_.bench().now() + rules.silence_limit / 3);
+    const kernel::Time next = std::min(until, twins_.bench().now() + step);
     twins_.each([&](SlaveBench& one) {
       one.status_telegrams(1);
+      one.segment().run_until(std::max(next, one.now()));
+    });
+    note_what_came(false);
+  }
+}
+
+// Until its last telegram has arrived. Of all three: a train keeps its gap for what is sent next.
+kernel::Duration SlaveActs::time_of_right_id() {
+  std::size_t levels = 0;
+  twins_.each([&](SlaveBench& one) {
+    one.begin();
+    const std::array<std::uint16_t, 2> behind{one.interfaces_off(), one.interfaces_off()};
+    append_cycle(one, true, one.id_octets(0, behind), kNothingWrong);
+    const CyclePlace& cycle = one.train().cycles().back();
+    levels = cycle.level_of(cycle.telegrams() - 1, line::kDataTelegramLevels);
+  });
+  return twins_.bench().bits(static_cast<std::int64_t>(levels));
+}
+
+void SlaveActs::keep_alive_without_stop() {
+  const interbus::Rules& rules = twins_.bench().rules();
+  const kernel::Time until = last_telegram_ + rules.silence_limit + 2 * rules.silence_tolerance;
+  const kernel::Duration step = rules.silence_limit / 3;
+  while (twins_.bench().now() < until) {
+    const kernel::Time next = twins_.bench().now() + step;
+    twins_.each([&](SlaveBench& one) {
+      one.begin();
+      one.train().status(1);
+      one.train().levels().place(line::kStatusTelegramLevels - 1, 0, 1);
+      one.send();
       one.segment().run_until(std::max(next, one.now()));
     });
     note_what_came(false);

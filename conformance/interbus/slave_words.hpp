@@ -30,6 +30,14 @@ enum class SlaveWord : std::uint8_t {
   parts,
   right_id,
   clock,
+  cut,
+  lost_in_a_telegram,
+  three_parts,
+  cut_without_stop,
+  glitch_within,
+  returned_glitch,
+  returned_pulses,
+  kept_alive_without_stop,
 };
 
 std::vector<SequenceWord> slave_words();
@@ -52,6 +60,8 @@ class SlaveActs {
   void periphery(const SequenceCommand& command);
   void be_silent(std::int64_t how_long);
   void keep_alive(std::int64_t how_long);
+  void keep_alive_without_stop();
+  kernel::Duration time_of_right_id();
   void note_what_came(bool is_id_cycle);
 
   SlaveTwins& twins_;

@@ -110,8 +110,10 @@ std::string columns_of(const AnyTable& table) {
   std::size_t name = 0;
   std::size_t range = 0;
   std::size_t reference = 0;
+  // Ends of times are written with units of their own.
   const auto range_of = [](const WrittenRow& row) {
-    return row.unit.empty() ? row.range : fmt::format("{} {}", row.range, row.unit);
+    const bool has_unit = row.unit.empty() || row.unit == "ps";
+    return has_unit ? row.range : fmt::format("{} {}", row.range, row.unit);
   };
   for (const WrittenRow& row : rows) {
     name = std::max(name, row.name.size());

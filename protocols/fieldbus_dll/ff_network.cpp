@@ -49,7 +49,7 @@ FfNetwork::FfNetwork(const LinkDescription& description, std::uint64_t seed, con
   for (std::size_t n = 0; n < description.devices.size(); ++n) {
     add(description.devices[n], n + 1, fmt::format("ff_device@{}", n + 1), stations.make_device, false);
   }
-  set_cycles(kinds());
+  set_cycles(kinds(), response_delay(rules_.link), "at most V(MRD) x V(ST)");
 }
 
 void FfNetwork::add(std::uint8_t node, std::size_t position, const std::string& name,
@@ -176,7 +176,11 @@ void FfNetwork::on_driven(const Octets& octets, Time begin, Time end) {
   const std::size_t signal = found->second;
   const bool is_of_master = has_master(description().data[signal].from);
   if (is_call || (is_of_master && !is_called(signal))) on_called(signal, begin, end);
-  if (!is_call) on_sent(signal);
+  if (is_call) {
+    ask(description().data[signal].from, end);
+  } else {
+    on_sent(signal);
+  }
 }
 
 Duration FfNetwork::answer_time() const {

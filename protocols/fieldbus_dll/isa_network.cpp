@@ -42,7 +42,7 @@ IsaNetwork::IsaNetwork(const LinkDescription& description, std::uint64_t seed, c
   for (std::size_t n = 0; n < description.devices.size(); ++n) {
     add(description.devices[n], n + 1, fmt::format("isa_dle@{}", n + 1), stations.make_device, false);
   }
-  set_cycles(kinds());
+  set_cycles(kinds(), {}, "no closed form: its own rules say how long it may prepare");
 }
 
 void IsaNetwork::add(std::uint8_t node, std::size_t position, const std::string& name,
@@ -149,6 +149,7 @@ void IsaNetwork::on_driven(const Octets& octets, Time begin, Time end) {
     if (signal == data.size()) return;
     if (signal == 0) begin_cycle(1, begin);
     on_called(signal, begin, end);
+    ask(data[signal].from, end);
   } else if (dlpdu->type == IsaType::du && dlpdu->data.size() == kDataOctets &&
              dlpdu->data[0] < data.size()) {
     on_sent(dlpdu->data[0]);

@@ -189,7 +189,15 @@ segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t n
   network::Attendance::Station* const attendance =
       is_under_test ? &attendance_.expect(name, why_silent) : nullptr;
   if (attendance != nullptr) place.tap_driven(*attendance);
-  seats_.push_back({&station, node, number, attendance});
+  Seat& seat = seats_.emplace_back(Seat{&station, node, number, attendance, name});
+  const bool is_called =
+      std::ranges::find(description_.data, node, &DataDescription::from) != description_.data.end();
+  if (is_under_test && is_called) {
+    seat.turnaround.emplace(network::AnswerBegin::first_level, [this, &seat](Time asked, Time answered) {
+      words_.end_delay(seat.turnaround_kind, asked, answered);
+    });
+    place.tap_driven(*seat.turnaround);
+  }
   const bool is_exposed = !has(description_.not_exposed, node);
   // Levels are half bits.
   places_.push_back({.name = place.name(),
@@ -199,6 +207,25 @@ segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t n
                      .is_exposed = is_exposed,
                      .why_not = is_exposed ? "" : "its spur is declared to lie in no clamp"});
   return place;
+}
+
+void LinkNetwork::set_cycles(std::vector<network::CycleKind> cycles, Duration answer_limit,
+                             const std::string& form) {
+  cycles_ = std::move(cycles);
+  for (Seat& seat : seats_) {
+    if (!seat.turnaround) continue;
+    seat.turnaround_kind = cycles_.size();
+    cycles_.push_back({.name = "turnaround time of " + seat.name,
+                       .theory = answer_limit,
+                       .form = "from the end of what calls it to the beginning of its answer; " + form,
+                       .is_bound = true,
+                       .is_delay = true});
+  }
+}
+
+void LinkNetwork::ask(std::uint8_t node, Time end) {
+  const auto seat = std::ranges::find(seats_, node, &Seat::node);
+  if (seat != seats_.end() && seat->turnaround) seat->turnaround->ask(end);
 }
 
 void LinkNetwork::refresh(std::uint8_t node) {
@@ -217,6 +244,8 @@ void LinkNetwork::start() {
   started_ = segment_.now();
   attendance_.begin();
   words_.begin();
+  for (Seat& seat : seats_)
+    if (seat.turnaround) seat.turnaround->forget();
   samples_.assign(signals_.size(), kernel::kNever);
   is_on_ = true;
   if (driven_until_ <= segment_.now()) return supply(segment_.now());

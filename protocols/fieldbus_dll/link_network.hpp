@@ -13,6 +13,7 @@
 #include "harness/kernel/random.hpp"
 #include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
+#include "harness/network/turnaround.hpp"
 #include "harness/network/word_exchanges.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
@@ -105,7 +106,12 @@ class LinkNetwork : public network::Network, private segment::Station, private s
   void on_got(std::size_t signal, std::uint16_t word, kernel::Time when) {
     words_.on_got(signal, word, when);
   }
-  void set_cycles(std::vector<network::CycleKind> cycles) { cycles_ = std::move(cycles); }
+  // And the turnaround time of each station under test that is called: at most `answer_limit` where it is not
+  // zero, as `form` says.
+  void set_cycles(std::vector<network::CycleKind> cycles, kernel::Duration answer_limit,
+                  const std::string& form);
+  // It is called by what ends then, and has to answer.
+  void ask(std::uint8_t node, kernel::Time end);
 
   // ---- of a profile ----
   virtual void power_up(kernel::Time now) = 0;
@@ -127,6 +133,9 @@ class LinkNetwork : public network::Network, private segment::Station, private s
     std::uint8_t node;
     std::size_t number;
     network::Attendance::Station* attendance;  // null: a reference
+    std::string name;
+    std::optional<network::Turnaround> turnaround{};  // of one under test
+    std::size_t turnaround_kind = 0;                  // among the cycles
   };
 
   void receive(segment::PortIndex, const line::Waveform&) override {}

@@ -71,6 +71,16 @@ void RingNetwork::list_cycles() {
          .is_bound = true,
          .is_delay = true});
   }
+  for (std::size_t n = 0; n < seats_.size(); ++n) {
+    if (!seats_[n].turnaround) continue;
+    seats_[n].turnaround_kind = cycles_.size();
+    cycles_.push_back(
+        {.name = fmt::format("turnaround time of station@{}", n + 1),
+         .theory = slots(description_.rules, 1),
+         .form = "from the end of a token to it until it drives; at most a slot time, the ways included",
+         .is_bound = true,
+         .is_delay = true});
+  }
   if (description_.cuts.empty()) return;
   cut_kind_ = cycles_.size();
   cycles_.push_back({.name = "round with a cut",
@@ -124,7 +134,12 @@ void RingNetwork::connect(Seat& seat, const std::string& name, std::size_t posit
     seat.device->wire(*seat.channels, *seat.user);
   }
   first->tap_driven(*this);
-  if (is_under_test) first->tap_driven(attendance_.expect(name));
+  if (!is_under_test) return;
+  first->tap_driven(attendance_.expect(name));
+  seat.turnaround.emplace(network::AnswerBegin::first_level, [this, &seat](Time asked, Time answered) {
+    words_.end_delay(seat.turnaround_kind, asked, answered);
+  });
+  first->tap_driven(*seat.turnaround);
 }
 
 void RingNetwork::start() {
@@ -155,6 +170,7 @@ void RingNetwork::stop() {
     seat.device->stop(segment_.now());
     seat.has_had_token = false;
     seat.asks.reset();
+    if (seat.turnaround) seat.turnaround->forget();
   }
   words_.cancel();
   for (RingFlow& flow : flows_) flow.stop();

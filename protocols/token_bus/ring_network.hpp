@@ -12,6 +12,7 @@
 #include "harness/kernel/random.hpp"
 #include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
+#include "harness/network/turnaround.hpp"
 #include "harness/network/word_exchanges.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/token_bus/channel_pair.hpp"
@@ -86,8 +87,10 @@ class RingNetwork final : public network::Network, private segment::Station, pri
     std::unique_ptr<ChannelPair> channels;                 // where there are two
     std::array<std::uint64_t, kChannels.size()> faults{};  // of each, reported since all data have come once
     std::size_t number = 0;
-    bool has_had_token = false;            // since the start
-    std::optional<std::size_t> asks = {};  // the flow whose confirmed datum was sent last
+    bool has_had_token = false;                       // since the start
+    std::optional<std::size_t> asks = {};             // the flow whose confirmed datum was sent last
+    std::optional<network::Turnaround> turnaround{};  // of one under test
+    std::size_t turnaround_kind = 0;                  // among the cycles
   };
 
   void list_cycles();
@@ -99,7 +102,7 @@ class RingNetwork final : public network::Network, private segment::Station, pri
   void on_time(kernel::Time now) override;
   kernel::Time next_time() const override { return wakes_at_; }
   void on_wave(const line::Waveform& wave) override;
-  void on_token(Address destination, kernel::Time begin);
+  void on_token(Address destination, kernel::Time begin, kernel::Time end);
   void on_data(Address at, const Frame& frame, kernel::Time when);
   void on_response(Seat& seat, const Frame& frame, kernel::Time when);
   void on_event(Address at, const Event& event, kernel::Time when);

@@ -44,13 +44,13 @@ void RingNetwork::on_wave(const line::Waveform& wave) {
     const auto frame =
         one.kind == ReceptionKind::frame ? frame_of(one.octets, description_.rules) : std::nullopt;
     if (!frame) continue;
-    if (frame->kind == FrameKind::token) on_token(frame->destination, wave.start);
+    if (frame->kind == FrameKind::token) on_token(frame->destination, wave.start, wave.end());
     if (frame->kind == FrameKind::data) on_datum(*frame, wave.start, wave.end());
     if (frame->kind == FrameKind::claim_token && came_up_at_) ++claims_;
   }
 }
 
-void RingNetwork::on_token(Address destination, Time begin) {
+void RingNetwork::on_token(Address destination, Time begin, Time end) {
   last_token_at_ = begin;
   // A token that is repeated begins no other round.
   const bool is_next = std::exchange(last_token_, destination) != destination;
@@ -58,6 +58,7 @@ void RingNetwork::on_token(Address destination, Time begin) {
   if (!is_next && came_up_at_) ++repeated_tokens_;
   const auto seat = std::ranges::find(seats_, destination, &Seat::address);
   if (seat == seats_.end()) return;
+  if (seat->turnaround) seat->turnaround->ask(end);
   const bool is_first = !std::exchange(seat->has_had_token, true);
   for (std::size_t n = 0; n < flows_.size(); ++n) {
     RingFlow& flow = flows_[n];

@@ -64,6 +64,7 @@ RunningNetwork::RunningNetwork(const NetworkDescription& description, std::uint6
   find_signals();
   plan_steps();
   find_cycle();
+  find_turnaround_times();
 }
 
 Rules RunningNetwork::rules_on_line() const {
@@ -86,7 +87,13 @@ void RunningNetwork::add_node(const NodeDescription& node, const RunningStations
   segment::MediumPort& place = line_.attach(fmt::format("node@{}/in", position), seat.number, 0, seat.way);
   place.tap_driven(node_drives_);
   if (seat.device->capabilities().senses_activity) place.sense_activity();
-  if (is_under_test) place.tap_driven(attendance_.expect(fmt::format("node@{}", position)));
+  if (is_under_test) {
+    place.tap_driven(attendance_.expect(fmt::format("node@{}", position)));
+    seat.turnaround.emplace(network::AnswerBegin::start_level, [this, &seat](Time asked, Time answered) {
+      if (watcher_ != nullptr) watcher_->on_delay(seat.turnaround_kind, asked, answered);
+    });
+    place.tap_driven(*seat.turnaround);
+  }
   seat.device->wire(place, seat.block);
   const bool is_exposed = repeaters_before(description_.rules, position - 1) == 0;
   places_.push_back({.name = place.name(),
@@ -159,6 +166,21 @@ void RunningNetwork::find_cycle() {
               !steady_cycle_.is_steady}};
 }
 
+// Of those under test: the others are as their rules have it.
+void RunningNetwork::find_turnaround_times() {
+  const Rules rules = rules_on_line();
+  for (std::size_t n = 0; n < seats_.size(); ++n) {
+    if (!seats_[n].turnaround) continue;
+    seats_[n].turnaround_kind = cycles_.size();
+    cycles_.push_back({.name = fmt::format("turnaround time of node@{}", n + 1),
+                       .theory = delimiter(rules) + turnaround_time_span(rules),
+                       .form = "from the last stop bit of a read to the start bit of its answer; at most a "
+                               "delimiter and turnaround_time_span",
+                       .is_bound = true,
+                       .is_delay = true});
+  }
+}
+
 // ---- the installation ----
 
 void RunningNetwork::start() {
@@ -173,6 +195,7 @@ void RunningNetwork::start() {
     segment_.refresh(seat.number);
     seat.is_open = seat.is_read = seat.is_closing = false;
     seat.reads = 0;
+    if (seat.turnaround) seat.turnaround->forget();
   }
   host_->set_power(false, now);
   host_->set_dip(description_.dip);
@@ -328,6 +351,7 @@ void RunningNetwork::HostDrives::on_wave(const line::Waveform& wave) {
   codec_.decode(wave, [this](const line::UartCharacter& character) {
     if (character.start >= collector_.ends_at()) take_frame();
     collector_.add(character);
+    end_ = character.start + character_time(network_.rules_on_line());
     if (collector_.frame().count == kCommandOctets) take_frame();
   });
   if (network_.is_held_back_) network_.wake();
@@ -336,7 +360,10 @@ void RunningNetwork::HostDrives::on_wave(const line::Waveform& wave) {
 void RunningNetwork::HostDrives::take_frame() {
   const auto octets = collector_.frame().whole(kCommandOctets);
   if (octets && (*octets)[1] == network_.description_.rules.read_command) {
-    if (Seat* const seat = network_.seat_of((*octets)[0])) ++seat->reads;
+    if (Seat* const seat = network_.seat_of((*octets)[0])) {
+      ++seat->reads;
+      if (seat->turnaround) seat->turnaround->ask(end_ + seat->way);
+    }
   }
   collector_.clear();
 }

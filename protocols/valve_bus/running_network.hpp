@@ -11,6 +11,7 @@
 #include "harness/kernel/random.hpp"
 #include "harness/network/attendance.hpp"
 #include "harness/network/network.hpp"
+#include "harness/network/turnaround.hpp"
 #include "harness/segment/medium.hpp"
 #include "harness/segment/segment.hpp"
 #include "protocols/valve_bus/codec.hpp"
@@ -83,6 +84,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
     RunningNetwork& network_;
     CharacterCodec codec_;
     FrameCollector collector_;
+    kernel::Time end_{};  // of the last character
   };
   struct Seat {
     NodeDescription description;
@@ -92,6 +94,8 @@ class RunningNetwork final : public network::Network, private HostApplication, p
     std::size_t number = 0;  // in the segment
     std::size_t first_signal = 0;
     bool is_written = false;
+    std::optional<network::Turnaround> turnaround{};  // of one under test
+    std::size_t turnaround_kind = 0;                  // among the cycles
     // The PC's side.
     std::uint16_t valves = 0;  // to write next
     bool is_given = false;     // `valves` comes from outside, not from a copy
@@ -112,6 +116,7 @@ class RunningNetwork final : public network::Network, private HostApplication, p
   void plan_steps();
   void find_signals();
   void find_cycle();
+  void find_turnaround_times();
   kernel::Duration begin_of(const PollStep& step) const;
   bool is_copied_to(unsigned address) const;
   std::size_t index_of(unsigned address) const;

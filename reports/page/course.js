@@ -66,7 +66,7 @@ function withinPlot({ctx, bbox}, draw) {
 }
 
 // At least a pixel wide, and with a solid strip on top: what is narrow is seen, too.
-function drawBands(plot, bands) {
+export function drawBands(plot, bands) {
   const {ctx, bbox} = plot;
   const places = bands.map(({from, to}) => {
     const left = plot.valToPos(from, "x", true);
@@ -131,7 +131,7 @@ function drawPoints(plot, windows) {
   }
 }
 
-function drawUpright(plot, at, name, text, dash = []) {
+export function drawUpright(plot, at, name, text, dash = []) {
   const {ctx, bbox} = plot;
   const x = plot.valToPos(at, "x", true);
   ctx.strokeStyle = ctx.fillStyle = colour(name);
@@ -203,7 +203,7 @@ function markKey({colour: name, outline, isFilled}) {
       drawn("path", {d: outline, class: `stroke-${name} ${isFilled ? `fill-${name}` : "fill-none"}`, "stroke-width": 1.2}));
 }
 
-function bandKey() {
+export function bandKey() {
   return drawn("svg", {viewBox: "0 0 24 12", width: 24, height: 12, class: "band-key", "aria-hidden": "true"},
       drawn("rect", {x: 0, y: 0, width: 24, height: 12, class: "band"}), drawn("rect", {x: 0, y: 0, width: 24, height: 3, class: "strip"}),
       [-6, 2, 10, 18].map((x) => drawn("line", {x1: x, y1: 12, x2: x + 12, y2: 0, class: "hatch"})));

@@ -2,6 +2,7 @@
 // margins. It is there when the report was asked for one.
 import { definitions, element, section } from "./dom.js";
 import { fixed, number, part, plural, scientific } from "./format.js";
+import { exposedText } from "./immunity.js";
 import { mutantsCaught } from "./matrix.js";
 import { caveatList, documentsOf, headlineOf, implementationText, partsOf, sentence } from "./summary.js";
 import { table } from "./table.js";
@@ -10,8 +11,9 @@ function distinct(values) {
   return [...new Set(values.filter(Boolean))];
 }
 
-function dates(runs) {
-  const days = distinct(runs.map(({ manifest }) => manifest.started.slice(0, 10))).sort();
+function dates({ runs, documents }) {
+  const made = [...runs.map(({ manifest }) => manifest.started), ...documents.map(({ content }) => content.made?.date ?? "")];
+  const days = distinct(made.map((one) => one.slice(0, 10))).sort();
   return days.length > 1 ? `${days[0]} to ${days.at(-1)}` : days[0];
 }
 
@@ -27,16 +29,18 @@ function testedPart({ runs, documents }) {
     ["Suite", distinct(identities.map((one) => one.suite_version)).join("; ")],
     ["Cases", distinct(identities.flatMap((one) => one.selectors)).join(" ")],
     ["Networks", distinct(documents.map(({ content }) => content.network)).join("; ")],
-    ["Declared (PICS), hash", distinct(identities.map((one) => one.pics_hash)).join(", ") || "nothing is declared"],
+    ["Exposed to the bursts", distinct(documents.map(({ content }) => exposedText(content))).join("; ")],
+    ["Declared (PICS), hash", distinct(identities.map((one) => one.pics_hash)).join(", ") || (runs.length ? "nothing is declared" : "")],
   ]);
 }
 
 function benchPart({ runs, documents }) {
   const identities = runs.map(({ results }) => results.run);
+  const made = documents.map(({ content }) => content.made).filter(Boolean);
   return definitions([
-    ["fieldproof", distinct(identities.map((one) => one.tool_version)).join(", ")],
-    ["Date", dates(runs)],
-    ["Host", distinct(runs.map(({ manifest }) => manifest.host)).join(", ")],
+    ["fieldproof", distinct([...identities, ...made].map((one) => one.tool_version)).join(", ")],
+    ["Date", dates({ runs, documents })],
+    ["Host", distinct([...runs.map(({ manifest }) => manifest), ...made].map((one) => one.host)).join(", ")],
     ["Seeds", distinct([...identities, ...documents.map(({ content }) => content)].map((one) => one.seed)).join(", ")],
     ["Network file, hash", distinct(identities.map((one) => one.network_hash)).join(", ")],
     ["Plan of faults, hash", distinct(identities.map((one) => one.plan_hash)).join(", ")],
@@ -73,19 +77,22 @@ function rowsOfRun(run, said) {
 // Of each quantity the series that deviates most, in the quiet phase: bursts and recovery decide nothing.
 function rowsOfMeasurement({ name, content }) {
   const worst = new Map();
-  for (const one of content.series.flatMap((series) => series.comparisons)) {
+  for (const one of content.series.flatMap((series) => series.comparisons.map((each) => ({...each, series: series.name})))) {
     if ((one.phase ?? "quiet") !== "quiet") continue;
     const known = worst.get(one.quantity);
     if (!known || Math.abs(one.deviation_percent) > Math.abs(known.deviation_percent)) worst.set(one.quantity, one);
   }
   const ofWorst = (one) => {
     const over = one.is_bound ? one.deviation_percent : Math.abs(one.deviation_percent);
-    return {test: `${name}: ${one.quantity}`, result: `${number(one.measured)} ${one.unit} (${one.agreement})`,
+    return {test: `${name}: ${one.quantity}${one.series === one.quantity ? "" : `, ${one.series}`}`, result: `${number(one.measured)} ${one.unit} (${one.agreement})`,
       limit: `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit} ${one.is_bound ? "+" : "\u00b1"} ${number(content.tolerance_percent)} % ${one.whole}`,
       margin: `${fixed(content.tolerance_percent - over, 2)} % ${one.whole}`};
   };
   return [...worst.values()].map(ofWorst);
 }
+
+// Of `--worst`.
+const kLimits = {A: "A", B: "B, and no stop", C: "C", D: "none: each criterion passes"};
 
 function rowsOfBursts({ name, content }) {
   const levels = distinct(content.tests.map((test) => test.level));
@@ -97,7 +104,7 @@ function rowsOfBursts({ name, content }) {
     const said = [worst && `criterion ${worst}`, stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
       judged.length < tests.length && `the network did not come up in ${part(tests.length - judged.length, tests.length)} tests`];
     return {test: `${name}: bursts, level ${level}`, result: said.filter(Boolean).join(", "),
-      limit: "B, and no stop", margin: ""};
+      limit: kLimits[content.worst_allowed ?? "B"], margin: ""};
   });
   const recovered = content.tests.filter((test) => test.came_up && test.recovered_by_itself).map((test) => test.recovery_cycles);
   if (recovered.length > 0 && content.recovery_limit) {

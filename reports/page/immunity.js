@@ -1,9 +1,10 @@
 // Networks under bursts: the performance criterion by level, repetition and polarity, and the ledger of errors.
+import { burstCourse } from "./burst_course.js";
 import { definitions, element, notice, section } from "./dom.js";
 import { number, part, plural, scientific } from "./format.js";
 import { heatMap, shareLines } from "./heat_map.js";
 import { later } from "./later.js";
-import { documentCommand, documentsOf } from "./summary.js";
+import { documentCommand, documentsOf, madeText } from "./summary.js";
 import { table } from "./table.js";
 import { sensitivityPart, thresholdsPart } from "./thresholds.js";
 
@@ -65,13 +66,23 @@ function balance(tests) {
   ], tests, "many");
 }
 
+// Numbers that show that it did otherwise than references; when bursts meet it differs as soon as its timing does.
+function asReferences({criterion, reference, ledger: {sent, balance: one}, ...test}) {
+  return criterion === reference.criterion && sent === reference.exposed && one.rejected === reference.rejected
+      && one.accepted_wrong === reference.accepted_wrong && test.longest_bad_run === reference.longest_bad_run
+      && test.bus_stops === reference.bus_stops && recoveryText(test) === recoveryText(reference);
+}
+
 // What of a result is the share of the device, and what any device shows on this cable.
 function besideReferences(tests) {
-  const both = tests.filter(({came_up: cameUp, reference}) => cameUp && reference?.came_up);
-  if (!both.length) return null;
+  const compared = tests.filter(({came_up: cameUp, reference, ledger: {balance: one}}) => cameUp && reference?.came_up && one);
+  if (!compared.length) return null;
+  const both = compared.filter((test) => !asReferences(test));
+  if (!both.length) return element("p", {}, `The same network with references alone did the same in ${compared.length === 1 ? "the test" : `each of the ${compared.length} tests`}, to the last exchange.`);
   const pair = (title, yours, theirs) => [
     {title: `${title}: yours`, kind: "number", cell: yours}, {title: "references", kind: "number", cell: ({reference}) => theirs(reference)}];
-  return table("Beside the same network with references alone", [
+  const same = compared.length - both.length;
+  return table(`Beside the same network with references alone${same ? `; in ${plural(same, "more test")} both did the same` : ""}`, [
     {title: "level", cell: ({level}) => level},
     {title: "pulses", cell: (test) => `${test.repetition} ${test.polarity === "-" ? "−" : test.polarity}`},
     {title: "criterion: yours", cell: ({criterion}) => criterion},
@@ -144,17 +155,27 @@ function totalPart({ total, residual }) {
   ]);
 }
 
+// Which receivers the bursts reach, and which they do not.
+export function exposedText({places = []}) {
+  if (places.length === 0) return "";
+  const hidden = places.filter(({exposed}) => !exposed);
+  const kMost = 6;
+  const listed = (names) => names.slice(0, kMost).join(", ") + (names.length > kMost ? ` and ${names.length - kMost} more` : "");
+  const exposed = listed(places.filter(({exposed: is}) => is).map(({receiver}) => receiver));
+  return hidden.length === 0 ? `all receivers: ${exposed}` : `${exposed}; not ${listed(hidden.map(({receiver}) => receiver))}`;
+}
+
 function campaign({ name, content }) {
   const hasBursts = content.tests.length > 0;
   return element("article", {}, element("h3", {}, content.network),
       definitions([["Document", name], ["Implementation", content.implementations],
         ...(hasBursts ? [["Profile", content.profile],
           ["A receiver can be wrong from", `${number(content.threshold_volts, 3)} V on`]] : []),
-        ["Seed", content.seed], ["Each test", `${number(content.duration_s)} s`]]),
+        ["Seed", content.seed], ["Each test", `${number(content.duration_s)} s`], ["Exposed to the bursts", exposedText(content)], ["Made", madeText(content)]]),
       documentCommand(content, name),
       content.is_complete ? null : notice("The campaign ended before all of its tests were made: what is not here was not tested."),
       thresholdsPart(content),
-      hasBursts ? [heatOf(content.tests), criteriaPart(content), besideReferences(content.tests)] : null, sensitivityPart(content), totalPart(content),
+      hasBursts ? [heatOf(content.tests), criteriaPart(content), burstCourse(content.tests), besideReferences(content.tests)] : null, sensitivityPart(content), totalPart(content),
       content.channels.length ? channels(content.channels) : null, hasBursts ? [balance(content.tests), ledger(content.tests)] : null);
 }
 

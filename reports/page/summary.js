@@ -160,11 +160,18 @@ export function headlineOf({ joined }) {
 export function summarySection(data) {
   const isJoined = data.runs.length > 1;
   const parts = partsOf(data);
+  // With a cover, one document has nothing left to sum up.
+  if (data.cover && parts.length === 1 && data.runs.length === 0) return null;
   const place = section("summary", "Summary", data.cover ? null : headlineOf(data),
       parts.length > 1 ? partsTable(parts) : null, data.cover ? null : caveatList(data, parts.length),
       data.runs.map((run, at) => runPart(run, {...data.joined.runs[at], at}, isJoined)));
   if (!data.cover) place.querySelector("h2").classList.add("unseen");
   return place;
+}
+
+// With what, when and where; documents of earlier programs do not say.
+export function madeText({made}) {
+  return made ? `by fieldproof ${made.tool_version} on ${made.host}, ${made.date}` : "";
 }
 
 // The command that makes a document again, as far as the document tells it.

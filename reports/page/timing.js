@@ -2,10 +2,10 @@
 // oscilloscope.
 import { chartFigure, histogram, oscilloscope } from "./charts.js";
 import { courseFigure } from "./course.js";
-import { definitions, element, section } from "./dom.js";
+import { definitions, element, notice, section } from "./dom.js";
 import { alike, number, part } from "./format.js";
 import { later } from "./later.js";
-import { documentCommand, documentsOf } from "./summary.js";
+import { documentCommand, documentsOf, madeText } from "./summary.js";
 import { table } from "./table.js";
 
 const kAgreement = {
@@ -108,7 +108,8 @@ function measurementPart({ name, content }) {
       element("h3", {}, `${content.network} `, agreementMark(content.agreement)),
       (content.failures ?? []).map((failure) => element("p", {}, element("span", {class: "verdict fail"}, "fail"), ` ${failure}`)),
       definitions([["Document", name], ["Protocol", content.protocol], ["Seed", content.seed],
-        ["Tolerance", `${number(content.tolerance_percent)} %`], ...content.conditions.map((one) => [one.name, one.value])]),
+        ["Tolerance", `${number(content.tolerance_percent)} %`], ["Implementation", content.implementations], ["Made", madeText(content)], ...content.conditions.map((one) => [one.name, one.value])]),
+      content.implementations && content.agreement !== "holds" ? notice("The closed forms are those of the reference stations. Others may be faster or slower within what the standard allows, so a difference is no failure here, and a row that is open may be one; 'fieldproof run' judges each station.") : null,
       documentCommand(content, name), content.series.map((series) => later(() => seriesPart(series, content.tolerance_percent))));
 }
 
