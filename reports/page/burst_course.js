@@ -4,23 +4,24 @@ import { axis, chartFigure, chartPlace, colour, kQuiet } from "./charts.js";
 import { bandKey, drawBands, drawUpright } from "./course.js";
 import { number, plural } from "./format.js";
 
-function share(count, whole) {
+function percentOf(count, whole) {
   return whole > 0 ? (100 * count) / whole : 0;
 }
 
 // Each window of the time in which bursts come, and the recovery as one more.
-function rowsOf({length_s: length, window_s: width, windows}) {
+function windowsWithErrors({length_s: length, window_s: width, windows}) {
+  const kMostWindows = 1000;
   const rows = [];
-  for (let n = 0; n * width <= length + width / 2; ++n) {
+  for (let n = 0; n <= Math.min(Math.round(length / width), kMostWindows); ++n) {
     const one = windows.find(({from_s: from}) => Math.abs(from - n * width) < width / 2);
-    rows.push({at: (n + 0.5) * width, rejected: one ? share(one.rejected, one.exchanges) : 0,
-      wrong: one ? share(one.accepted_wrong, one.exchanges) : 0});
+    rows.push({at: (n + 0.5) * width, rejected: one ? percentOf(one.rejected, one.exchanges) : 0,
+      wrong: one ? percentOf(one.accepted_wrong, one.exchanges) : 0});
   }
   return rows;
 }
 
-function chart(label, course) {
-  const rows = rowsOf(course);
+function errorsChart(label, course) {
+  const rows = windowsWithErrors(course);
   const bands = course.bursts.map(({from_s: from, to_s: to}) => ({from, to}));
   const stops = course.windows.filter((one) => one.stops > 0);
   const bars = {points: {show: false}, paths: uPlot.paths.bars({size: [0.9, 60]}),
@@ -49,21 +50,21 @@ function chart(label, course) {
 }
 
 // Of the tests with errors the one with the worst criterion, at the lowest voltage at which that was seen.
-function worstOf(tests) {
-  const shown = tests.filter(({came_up: cameUp, course}) => cameUp && course?.windows.length > 0);
+function worstWithErrors(tests) {
+  const shown = tests.filter(({came_up: cameUp, course}) => cameUp && course?.windows.length > 0 && course.window_s > 0);
   const order = (one) => [-one.criterion.codePointAt(0), one.open_circuit_volts];
   return shown.sort((a, b) => order(a)[0] - order(b)[0] || order(a)[1] - order(b)[1])[0];
 }
 
 export function burstCourse(tests) {
-  const test = worstOf(tests);
+  const test = worstWithErrors(tests);
   if (!test) return null;
   const {course} = test;
   const bursts = course.bursts.reduce((sum, {count}) => sum + count, 0);
   const stops = course.windows.reduce((sum, one) => sum + one.stops, 0);
   const title = `Errors over time: level ${test.level}, ${test.repetition} ${test.polarity}, criterion ${test.criterion}`;
   const said = `${plural(bursts, "burst")} in ${number(course.length_s)} s, then the recovery, in windows of ${number(course.window_s, 3)} s`;
-  return chartFigure(title, said, chart(`${title}: ${said}`, course),
+  return chartFigure(title, said, errorsChart(`${title}: ${said}`, course),
       [{colour: "accent", text: "exchanges that were rejected, or accepted wrong"}, {colour: "fail", text: "accepted wrong"},
         {key: bandKey(), text: "bursts on the line; those too near to each other are one band"},
         ...(stops ? [{colour: "fail", dash: 2, text: `the bus stopped ${stops === 1 ? "once" : `${stops} times`}`}] : []),
