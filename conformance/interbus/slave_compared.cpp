@@ -201,6 +201,68 @@ std::vector<Commands> within_a_reset() {
   return all;
 }
 
+// What only a second thing shows: errors and marks in a cycle that has an order, a stray telegram without its
+// stop level, what is plugged in later, silence in the middle of a cycle.
+std::vector<Commands> rare_orders() {
+  const SequenceCommand wrong = command(SlaveWord::data, {{2, 1}});
+  const SequenceCommand plugged = command(SlaveWord::plugs);
+  const SequenceCommand beyond = command(SlaveWord::kept_alive);
+  std::vector<Commands> all{
+      {command(SlaveWord::telegrams, {{1, 1}, {4, 2}, {5, 0}}), id(0)},
+      {command(SlaveWord::plugs, {{0, 0}, {1, 0}}), id(0), plugged, returns(false), returns(true)},
+      {id(3), plugged, command(SlaveWord::plugs, {{0, 0}, {1, 0}}), plugged, returns(false), returns(true)},
+      {id(4), beyond, id(0), id(4), beyond, id(0), id(4), returns(true), id(0)}};
+  for (const std::int64_t fault : {2, 3}) {
+    const auto with_fault = [fault](std::int64_t orders) {
+      return command(SlaveWord::id, {{0, orders}, {static_cast<std::size_t>(fault), 0x8000}});
+    };
+    all.push_back({with_fault(4), id(0)});
+    all.push_back({wrong, with_fault(8), id(0)});
+    all.push_back({id(4), command(SlaveWord::kept_alive, {{0, 0}}), with_fault(4),
+                   command(SlaveWord::kept_alive, {{0, 0}}), command(SlaveWord::kept_alive, {{0, 1}}),
+                   id(0)});
+  }
+  for (const SlaveWord word : {SlaveWord::data, SlaveWord::id}) {
+    const unsigned units = vocabulary().words[static_cast<std::size_t>(word)].units;
+    for (const std::uint32_t level : {6U, 12U}) {
+      SequenceCommand cut = command(word);
+      cut.faults.push_back({SequenceFaultKind::flip, 1, level});
+      for (unsigned n = 0; n < 4; ++n) cut.faults.push_back({SequenceFaultKind::drop, units - 1 - n, 0});
+      all.push_back({cut, command(SlaveWord::silence), id(0)});
+      all.push_back({cut, id(0)});
+    }
+    // One cycle within another, each whole and each a telegram short.
+    SequenceCommand within = command(word == SlaveWord::data ? SlaveWord::id : SlaveWord::data);
+    SequenceCommand broken = command(word);
+    for (unsigned n = 0; n < 4; ++n) broken.faults.push_back({SequenceFaultKind::drop, units - 1 - n, 0});
+    for (const std::int64_t in_front : {-3, -1, 0}) {
+      within.numbers[4] = in_front;
+      all.push_back({broken, within});
+    }
+  }
+  return all;
+}
+
+// Signs of life are telegrams of each header.
+std::vector<Commands> each_header_keeps_alive() {
+  std::vector<Commands> all;
+  for (std::int64_t header = 0; header < 8; ++header) {
+    const SequenceCommand one =
+        command(SlaveWord::telegrams, {{0, header & 1}, {1, header >> 1 & 1}, {2, header >> 2}});
+    const SequenceCommand half = command(SlaveWord::silence, {{0, 0}});
+    all.push_back({half, one, half, one, half, one, half});
+  }
+  return all;
+}
+
+// 16, and 256: errors in a row that a counter of four or of eight bits does not hold.
+std::vector<Commands> many_errors() {
+  constexpr std::size_t kOf256 = 85;
+  Commands many(kOf256, command(SlaveWord::data, {{2, 1}, {6, 3}}));
+  many.push_back(command(SlaveWord::data, {{2, 1}}));
+  return {Commands(6, command(SlaveWord::data, {{2, 1}, {6, 3}})), many};
+}
+
 // A right ID cycle that ends a little before the end of that time, and one after it.
 std::vector<Commands> at_the_end_of_a_reset() {
   std::vector<Commands> all;
@@ -425,6 +487,21 @@ void change_to_long(interbus::Rules& rules) {
   rules.frame_check = "CRC-16/KERMIT";
 }
 
+// A telegram lasts longer than the tolerance of the silence, and a delay longer than 32 bits of picoseconds.
+void change_to_slow(interbus::Rules& rules) {
+  rules.bit_rate = 2'000;
+  rules.forward_delay_half_bits = 3;
+  rules.return_delay_half_bits = 40;
+  rules.silence_limit = 400 * kernel::kMillisecond;
+}
+
+// A bit is no whole number of nanoseconds.
+void change_to_odd_rate(interbus::Rules& rules) {
+  rules.bit_rate = 1'111'112;
+  rules.forward_delay_half_bits = 701;
+  rules.return_delay_half_bits = 999;
+}
+
 // Minutes: the times of a sequence are longer than 32 bits of microseconds.
 void change_to_minutes(interbus::Rules& rules) {
   rules.silence_limit = 700 * kernel::kSecond;
@@ -442,7 +519,7 @@ constexpr std::uint16_t kCodeOfMany = 0x1903;
 void change_to_many_words(interbus::Rules& rules) {
   const auto published = interbus::published_length_codes();
   rules.length_codes.assign(published.begin(), published.end());
-  rules.length_codes.push_back({0x19, 255});
+  rules.length_codes.push_back({0x19, 256});
   rules.max_io_points *= 2;
 }
 
@@ -490,13 +567,14 @@ std::vector<SlaveCase> compared_as_usual() {
                {{"message_without_error", "octet_wrong"}}, each_of({{one_after_another, 40}})),
       compared("around_a_reset",
                "All that leaves something behind, before and after silence or a loss of supply," + after,
-               {{"latches_late", "outputs_at_another_time"}, {"keeps_all_without_supply", "octet_wrong"}},
-               each_of({{around_a_reset, 120}})),
+               {{"latches_late", "outputs_at_another_time"}}, each_of({{around_a_reset, 120}})),
       compared("within_a_cycle", "Something between a cycle whose end is lost and that end," + after,
                {{"check_not_reset_between_cycles", "octet_wrong"}}, each_of({{within_a_cycle, 90}})),
       compared("within_a_reset_of_the_outgoing_bus",
                "ID cycles, silence and supply at both ends of the time of control_reset," + after,
-               {{"outgoing_reset_clears_outputs", "outputs_wrong"}}, each_of({{within_a_reset, 63}})),
+               {{"outgoing_reset_clears_outputs", "outputs_wrong"},
+                {"keeps_all_without_supply", "telegram_added"}},
+               each_of({{within_a_reset, 63}})),
       compared("silence_within_a_reset_of_the_outgoing_bus",
                "Silence that resets the slave while it keeps the outgoing bus in reset, then an ID cycle.",
                {{"reset_ends_outgoing_reset", "octet_wrong"}}, silence_in_a_reset),
@@ -545,6 +623,14 @@ std::vector<SlaveCase> compared_as_usual() {
                  bench.require_line_interface();
                  each_of({{edges_at_both_limits, 8}})(bench, judge);
                }),
+      compared(
+          "rare_orders",
+          "Orders, messages and interfaces with an error, a mark or a silence in the very cycle," + after,
+          {{"obeys_a_marked_id_cycle", "octet_wrong"}}, each_of({{rare_orders, 40}})),
+      compared("each_header_keeps_alive", "Telegrams of one header are the only signs of life," + after,
+               {{"silence_counts_data_only", "outputs_wrong"}}, each_of({{each_header_keeps_alive, 8}})),
+      compared("many_errors", "18 and 256 cycles in a row with a wrong check," + after,
+               {{"counts_errors_in_8_bits", "octet_wrong"}}, each_of({{many_errors, 2}})),
       compared("many_cycles", "270 data cycles and 270 ID cycles," + after,
                {{"loses_every_200th_cycle", "outputs_wrong"}}, each_of({{many_cycles, 2}})),
       compared("drawn_sequences", "Sequences of all words at random.",
@@ -559,13 +645,19 @@ std::vector<SlaveCase> compared_elsewhere() {
                {{"delays_four_bits", "passed_at_another_time"}}, some_of_all(), change_to_short),
       compared("long_times", "The same with long delays and a long silence.",
                {{"latches_5_ms_late", "outputs_at_another_time"}}, some_of_all(), change_to_long),
+      compared("slow_line", "The same at 2 kbit/s.",
+               {{"silence_from_the_start_of_a_telegram", "outputs_at_another_time"}},
+               each_of({{around_a_reset, 12}, {each_value, 12}}), change_to_slow),
+      compared("bits_of_odd_length", "The same at 1.111112 Mbit/s with delays of hundreds of bits.",
+               {{"bit_time_in_whole_nanoseconds", "passed_at_another_time"}},
+               each_of({{each_value, 16}, {one_after_another, 6}}), change_to_odd_rate),
       compared("times_of_minutes", "Silences and resets with a silence limit of 700 s.",
                {{"counts_microseconds_in_32_bits", "outputs_wrong"}},
                each_of({{around_a_reset, 16}, {at_the_end_of_a_reset, 2}}), change_to_minutes),
       compared("parts_of_milliseconds", "Silences and resets with a silence limit of 5.5 ms, to 0.1 ms.",
                {{"silence_limit_in_whole_milliseconds", "outputs_at_another_time"}},
                each_of({{around_a_reset, 16}, {at_the_end_of_a_reset, 2}}), change_to_parts_of_milliseconds),
-      compared("many_words", "The same with 255 words.", {{"loses_input_words_above_16", "octet_wrong"}},
+      compared("many_words", "The same with 256 words.", {{"loses_input_words_above_16", "octet_wrong"}},
                each_of({{each_value, 8, 60}}), change_to_many_words, kCodeOfMany)};
 }
 

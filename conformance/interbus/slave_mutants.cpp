@@ -105,6 +105,17 @@ std::vector<SlaveRow> slave_telegram_rows() {
       {"delays_four_bits", "", "delays by two bits on each way",
        with_rules<interbus::Slave>(
            [](Rules& rules) { rules.forward_delay_half_bits = rules.return_delay_half_bits = 4; })},
+      {"bit_time_in_whole_nanoseconds", "", "has bits of whole nanoseconds",
+       with_rules<interbus::Slave>([](Rules& rules) {
+         const kernel::Duration bit =
+             kernel::levels_duration(1, rules.bit_rate) / kernel::kNanosecond * kernel::kNanosecond;
+         const auto shorter = [&](unsigned half_bits) {
+           const kernel::Duration delay = static_cast<std::int64_t>(half_bits) * bit / 2;
+           return static_cast<unsigned>(2 * delay.count() * rules.bit_rate / kernel::kSecond.count());
+         };
+         rules.forward_delay_half_bits = shorter(rules.forward_delay_half_bits);
+         rules.return_delay_half_bits = shorter(rules.return_delay_half_bits);
+       })},
       {"delay_varies", "", "delays every second transmission by one more bit", mutant<DelayVaries>()},
       {"does_not_retime", "", "sends low pulses that are 10 % of a bit too long", mutant<DoesNotRetime>()},
       {"swallows_status_telegrams", "", "does not pass on status telegrams",
@@ -174,6 +185,12 @@ std::vector<SlaveRow> slave_management_rows() {
        mutant<SilenceCountsDataOnly>()},
       {"silence_limit_hard_coded", "", "takes silence for a reset after 25 ms whatever the setting says",
        with_rules<interbus::Slave>([](Rules& rules) { rules.silence_limit = Rules{}.silence_limit; })},
+      {"silence_from_the_start_of_a_telegram", "", "counts silence from the start of the last telegram",
+       mutant<SilenceFromTheStartOfATelegram>()},
+      {"obeys_a_marked_id_cycle", "", "takes the orders of an ID cycle that another station has marked",
+       mutant<ObeysAMarkedIdCycle>()},
+      {"counts_errors_in_8_bits", "", "reports no check error after 256 of them",
+       mutant<CountsErrorsIn8Bits>()},
       {"without_stop_no_sign_of_life", "", "does not take a telegram without its stop bit for a sign of life",
        mutant<WithoutStopNoSignOfLife>()},
       {"counts_microseconds_in_32_bits", "", "does not see silence any more 71.6 minutes after power-up",

@@ -167,6 +167,38 @@ class MessageClearedByDataCycle : public Slave {
   mutable bool is_good_ = false;
 };
 
+// Takes the orders of an ID cycle that another station has marked.
+class ObeysAMarkedIdCycle : public Slave {
+  using Slave::Slave;
+  bool accepts_cycle(bool own_check_good, bool upstream_clean) const override {
+    return own_check_good && (upstream_clean || phase() == Phase::id_check);
+  }
+};
+
+// 0 errors are no message to it, and so are 256.
+class CountsErrorsIn8Bits : public Slave {
+  using Slave::Slave;
+  void on_cycle_rejected(kernel::Time when, bool own_error) override {
+    Slave::on_cycle_rejected(when, own_error);
+    if (own_error && ++errors_ == 0) on_id_read(rules().message_check_error);
+  }
+  void on_id_read(std::uint16_t messages_read) override {
+    errors_ = 0;
+    Slave::on_id_read(messages_read);
+  }
+  std::uint8_t errors_ = 0;
+};
+
+// Counts from the beginning of the last telegram.
+class SilenceFromTheStartOfATelegram : public Slave {
+  using Slave::Slave;
+  kernel::Time sign_of_life(kernel::Time last_telegram, kernel::Time) const override {
+    return last_telegram == kNoTelegram
+               ? last_telegram
+               : last_telegram - kernel::levels_duration(line::kStatusTelegramLevels, rules().bit_rate);
+  }
+};
+
 class TellsErrorsOfOthers : public Slave {
   using Slave::Slave;
   void on_cycle_rejected(kernel::Time when, bool) override { Slave::on_cycle_rejected(when, true); }

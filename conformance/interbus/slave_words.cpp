@@ -630,7 +630,8 @@ void SlaveActs::keep_alive_without_stop() {
     twins_.each([&](SlaveBench& one) {
       one.begin();
       one.train().status(1);
-      one.train().levels().place(line::kStatusTelegramLevels - 1, 0, 1);
+      one.channel().on_next();
+      one.channel().flip_in_telegram(0, line::kStatusTelegramLevels - 1);
       one.send();
       one.segment().run_until(std::max(next, one.now()));
     });

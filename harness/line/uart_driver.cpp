@@ -125,6 +125,10 @@ void UartDriver::put_idle(const Drive& drive, kernel::Time to) {
 // The longer it has been on, the longer the pieces: a driver that hangs costs little.
 void UartDriver::put_piece(const Drive& drive, kernel::Time now, kernel::Time next_call) {
   if (driven_until_ > now) return;
+  // Who says each character as the one before has left may have rounded its instant: there is no room for
+  // idle.
+  if (next_call > now && next_call - driven_until_ <= kRounding) return;
+  if (now - driven_until_ <= kRounding) driven_until_ = now;
   const kernel::Duration longest =
       std::clamp((driven_until_ - driving_since_) / 8, uart_.bits(1), uart_.half_characters(1));
   if (next_call <= now) return;

@@ -104,6 +104,30 @@ RC_GTEST_PROP(UartDriver, WhatComesAfterIdleBeginsToTheNanosecond, ()) {
   RC_ASSERT(std::chrono::abs(line.characters()[0].start - start) <= UartDriver::kRounding);
 }
 
+// Each when the one before has left, as a UART that is free reports it, with instants that were rounded up.
+RC_GTEST_PROP(UartDriver, CharactersOneAfterAnotherBeginWhenTheyAreSaid, ()) {
+  Uart uart = kUart;
+  uart.bit_rate = *rc::gen::element<std::int64_t>(1'200, 9'600, 62'500, 375'000);
+  OnTheLine line(uart);
+  const auto rounding = kernel::Duration{*rc::gen::inRange<std::int64_t>(0, 300)};
+  line.driver().enable(true, kernel::kStart);
+  Time start = kernel::kStart + uart.bits(1);
+  line.put(kernel::kStart, start);
+  std::vector<Time> starts;
+  for (int n = 0; n < 5; ++n) {
+    line.run_until(start);
+    line.driver().send(start, static_cast<std::uint16_t>(n));
+    starts.push_back(start);
+    const Time next = start + uart.character_time() + rounding;
+    line.put(start, next);
+    start = next;
+  }
+  RC_ASSERT(line.characters().size() == starts.size());
+  RC_ASSERT(!line.has_gap());
+  for (std::size_t n = 0; n < starts.size(); ++n)
+    RC_ASSERT(std::chrono::abs(line.characters()[n].start - starts[n]) <= UartDriver::kRounding);
+}
+
 TEST(UartDriver, ThatIsOnAndSilentIsDrivenInPieces) {
   OnTheLine line(kUart);
   EXPECT_EQ(line.driver().next_time(), kernel::kNever);

@@ -27,7 +27,7 @@ namespace fieldproof::interbus {
 // Length code of an ID code (its bits 8..12): not the binary number of words.
 struct LengthCode {
   std::uint8_t code;
-  std::uint8_t words;
+  std::uint16_t words;
 };
 
 // The codes with a whole number of words, by rising words; 00h is "no data". The codes 08h..0Dh, 10h and

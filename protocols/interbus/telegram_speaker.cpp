@@ -22,6 +22,7 @@ bool TelegramSpeaker::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
   heard_.rate = rules.bit_rate;
   bench_ = &bench;
   now_ = kernel::kStart;
+  busy_until_.fill(kernel::Time{kernel::Duration::min()});
   return device_->begin(begin, *this);
 }
 
@@ -84,7 +85,7 @@ void TelegramSpeaker::hand_over(unsigned port) {
 void TelegramSpeaker::transmit(unsigned port, line::Waveform& wave) {
   line::TelegramReceiver receiver(*code_, heard_.rate);
   kernel::Time begin{};
-  kernel::Time end{kernel::Duration::min()};
+  kernel::Time& end = busy_until_.at(port);
   const auto say = [&] {
     if (!said_.empty()) bench_->send(port, begin, said_);
     said_.clear();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -46,6 +47,7 @@ class TelegramSpeaker final : public iut::Device, private iut::Bench {
   const line::TelegramCode* code_ = nullptr;
   line::Waveform heard_;
   std::vector<std::uint16_t> said_;
+  std::array<kernel::Time, TelegramFront::kPorts> busy_until_{};  // by port: what was said before is over
 };
 
 }  // namespace fieldproof::interbus
