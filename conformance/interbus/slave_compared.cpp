@@ -508,6 +508,14 @@ void change_to_minutes(interbus::Rules& rules) {
   rules.silence_tolerance = 2 * kernel::kSecond;
 }
 
+// No delay at all, and less than a millisecond; the check as its settings have it, of no catalogue's preset.
+void change_to_least(interbus::Rules& rules) {
+  rules.forward_delay_half_bits = 0;
+  rules.return_delay_half_bits = 0;
+  rules.silence_limit = 800 * kernel::kMicrosecond;
+  rules.silence_tolerance = 100 * kernel::kMicrosecond;
+}
+
 // Not whole milliseconds.
 void change_to_parts_of_milliseconds(interbus::Rules& rules) {
   rules.silence_limit = 5'500 * kernel::kMicrosecond;
@@ -654,6 +662,9 @@ std::vector<SlaveCase> compared_elsewhere() {
       compared("times_of_minutes", "Silences and resets with a silence limit of 700 s.",
                {{"counts_microseconds_in_32_bits", "outputs_wrong"}},
                each_of({{around_a_reset, 16}, {at_the_end_of_a_reset, 2}}), change_to_minutes),
+      compared("least_times", "The same without delays and with a silence limit of 0.8 ms.",
+               {{"a_delay_at_least", "passed_at_another_time"}},
+               each_of({{each_value, 12}, {around_a_reset, 12}}), change_to_least),
       compared("parts_of_milliseconds", "Silences and resets with a silence limit of 5.5 ms, to 0.1 ms.",
                {{"silence_limit_in_whole_milliseconds", "outputs_at_another_time"}},
                each_of({{around_a_reset, 16}, {at_the_end_of_a_reset, 2}}), change_to_parts_of_milliseconds),

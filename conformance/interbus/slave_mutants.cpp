@@ -116,6 +116,10 @@ std::vector<SlaveRow> slave_telegram_rows() {
          rules.forward_delay_half_bits = shorter(rules.forward_delay_half_bits);
          rules.return_delay_half_bits = shorter(rules.return_delay_half_bits);
        })},
+      {"a_delay_at_least", "", "delays by half a bit where it should not delay",
+       with_rules<interbus::Slave>([](Rules& rules) {
+         rules.forward_delay_half_bits = std::max(rules.forward_delay_half_bits, 1U);
+       })},
       {"delay_varies", "", "delays every second transmission by one more bit", mutant<DelayVaries>()},
       {"does_not_retime", "", "sends low pulses that are 10 % of a bit too long", mutant<DoesNotRetime>()},
       {"swallows_status_telegrams", "", "does not pass on status telegrams",

@@ -43,7 +43,7 @@ line::Levels cycle_of(SlaveBench& bench, std::int64_t word, unsigned gap) {
 std::vector<std::uint16_t> words_in_turn(const SlaveBench& bench, std::int64_t even, std::int64_t odd) {
   std::vector<std::uint16_t> words;
   for (unsigned n = 0; n < bench.words(); ++n)
-    words.push_back(static_cast<std::uint16_t>(n % 2 == 0 ? even : odd));
+    words.push_back(static_cast<std::uint16_t>((n % 2 == 0 ? even : odd) ^ (n / 2 * 0x0101)));
   return words;
 }
 

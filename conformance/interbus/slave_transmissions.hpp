@@ -11,7 +11,7 @@
 // sender of the bench would drive it. Each leaves what was driven in the views.
 namespace fieldproof::conformance {
 
-// As many words as the slave has, these two in turn.
+// As many words as the slave has: these two in turn, from the third on each another one.
 std::vector<std::uint16_t> words_in_turn(const SlaveBench& bench, std::int64_t even, std::int64_t odd);
 
 // A place in a data cycle: a telegram, from 0, and one of its levels. Telegrams are counted round.

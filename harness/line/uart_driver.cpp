@@ -127,8 +127,10 @@ void UartDriver::put_piece(const Drive& drive, kernel::Time now, kernel::Time ne
   if (driven_until_ > now) return;
   // Who says each character as the one before has left may have rounded its instant: there is no room for
   // idle.
-  if (next_call > now && next_call - driven_until_ <= kRounding) return;
-  if (now - driven_until_ <= kRounding) driven_until_ = now;
+  if (next_call > now && next_call - driven_until_ <= kRounding) {
+    driven_until_ = next_call;
+    return;
+  }
   const kernel::Duration longest =
       std::clamp((driven_until_ - driving_since_) / 8, uart_.bits(1), uart_.half_characters(1));
   if (next_call <= now) return;
