@@ -28,6 +28,7 @@ std::vector<HostCase> host_refresh_cases();
 std::vector<HostCase> host_dip_cases();
 std::vector<HostCase> host_immunity_cases();
 std::vector<HostCase> host_supply_cases();
+std::vector<HostCase> host_corner_cases();
 std::vector<HostCase> host_attempt_cases();
 std::vector<HostCase> host_meanwhile_cases();
 std::vector<HostCase> host_endurance_cases();

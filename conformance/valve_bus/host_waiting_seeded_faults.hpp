@@ -12,6 +12,74 @@
 // a time-out.
 namespace fieldproof::conformance::host_seeded_faults {
 
+// ---- what went wrong before ----
+
+// Of a command that did not fit it waits for the rest, and reports the part.
+class LostPartReported : public Host {
+  using Host::Host;
+  void on_lost_command(std::uint8_t id, Time now) override {
+    Host::on_lost_command(id, now);
+    lost_ = id;
+    due_ = now + rules().partial_command_limit;
+  }
+  void on_time(Time now) override {
+    if (lost_ && due_ <= now) {
+      tell(HostError{*lost_, HostErrorKind::part_of_command}, now);
+      lost_.reset();
+    }
+    Host::on_time(now);
+  }
+  Time next_time() const override { return lost_ ? std::min(due_, Host::next_time()) : Host::next_time(); }
+  using Host::tell;
+  std::optional<std::uint8_t> lost_;
+  Time due_{};
+};
+
+class OverflowIdOf7Bits : public Host {
+  using Host::Host;
+  void on_lost_command(std::uint8_t id, Time now) override {
+    Host::on_lost_command(static_cast<std::uint8_t>(id & 0x7F), now);
+  }
+};
+
+class NoPartOfId0 : public Host {
+  using Host::Host;
+  void on_part(Octets part, Time now) override {
+    if (part.empty() || part.front() != 0) Host::on_part(part, now);
+  }
+};
+
+class AttemptsOverPowerLoss : public Host {
+  using Host::Host;
+  void set_power(bool is_on, Time now) override {
+    if (!is_on) spent_ = exchange() ? exchange()->attempt : 0;
+    Host::set_power(is_on, now);
+  }
+  bool may_repeat(const Exchange& repeated) const override {
+    return repeated.attempt + spent_ < rules().read_attempts;
+  }
+  void fail(HostErrorKind kind, Time now) override {
+    Host::fail(kind, now);
+    spent_ = 0;
+  }
+  unsigned spent_ = 0;
+};
+
+// Gives up a write with its last attempt, and with it the refreshes of it.
+class NoRefreshAfterError4 : public Host {
+  using Host::Host;
+  Time refreshed_at(Time start) const override {
+    constexpr Duration kNotAnyMore = 1000 * kernel::kSecond;
+    const bool is_last = exchange() && exchange()->attempt >= rules().read_attempts;
+    return Host::refreshed_at(start) + (is_last ? kNotAnyMore : Duration{});
+  }
+};
+
+class WaitsThreeTimeOutsForSilence : public Host {
+  using Host::Host;
+  Duration longest_talk() const override { return 3 * time_out(); }
+};
+
 // ---- failed attempts ----
 
 class NoRestBehindWrong : public Host {

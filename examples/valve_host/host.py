@@ -58,8 +58,8 @@ class Fifo:
         if self.part:
             del self.octets[-self.part:]
             self.tell_room(now)
+            self.host.report_error(self.first, PART, now)
         self.part, self.lost, self.deadline = 0, 0, NEVER
-        self.host.report_error(self.first, PART, now)
 
     def tell_room(self, now):
         self.host.stream.write(ROOM, FIFO_OCTETS - len(self.octets), now)
