@@ -116,6 +116,12 @@ std::vector<SlaveRow> slave_telegram_rows() {
          rules.forward_delay_half_bits = shorter(rules.forward_delay_half_bits);
          rules.return_delay_half_bits = shorter(rules.return_delay_half_bits);
        })},
+      {"delay_in_32_bits", "", "has delays in 32 bits of picoseconds",
+       with_rules<interbus::Slave>([](Rules& rules) {
+         const kernel::Duration half = kernel::levels_duration(1, 2 * rules.bit_rate);
+         const std::int64_t delay = rules.return_delay_half_bits * half.count() % (std::int64_t{1} << 32);
+         rules.return_delay_half_bits = static_cast<unsigned>(delay / half.count());
+       })},
       {"a_delay_at_least", "", "delays by half a bit where it should not delay",
        with_rules<interbus::Slave>([](Rules& rules) {
          rules.forward_delay_half_bits = std::max(rules.forward_delay_half_bits, 1U);
@@ -189,8 +195,6 @@ std::vector<SlaveRow> slave_management_rows() {
        mutant<SilenceCountsDataOnly>()},
       {"silence_limit_hard_coded", "", "takes silence for a reset after 25 ms whatever the setting says",
        with_rules<interbus::Slave>([](Rules& rules) { rules.silence_limit = Rules{}.silence_limit; })},
-      {"silence_from_the_start_of_a_telegram", "", "counts silence from the start of the last telegram",
-       mutant<SilenceFromTheStartOfATelegram>()},
       {"obeys_a_marked_id_cycle", "", "takes the orders of an ID cycle that another station has marked",
        mutant<ObeysAMarkedIdCycle>()},
       {"counts_errors_in_8_bits", "", "reports no check error after 256 of them",

@@ -189,16 +189,6 @@ class CountsErrorsIn8Bits : public Slave {
   std::uint8_t errors_ = 0;
 };
 
-// Counts from the beginning of the last telegram.
-class SilenceFromTheStartOfATelegram : public Slave {
-  using Slave::Slave;
-  kernel::Time sign_of_life(kernel::Time last_telegram, kernel::Time) const override {
-    return last_telegram == kNoTelegram
-               ? last_telegram
-               : last_telegram - kernel::levels_duration(line::kStatusTelegramLevels, rules().bit_rate);
-  }
-};
-
 class TellsErrorsOfOthers : public Slave {
   using Slave::Slave;
   void on_cycle_rejected(kernel::Time when, bool) override { Slave::on_cycle_rejected(when, true); }

@@ -74,21 +74,57 @@ function rowsOfRun(run, said) {
       limit: `${isOneSided(one) ? "at most" : `${number(one.low)} to`} ${number(one.high)} ${one.unit}`, margin: `${number(one.margin)} ${one.unit}`}))];
 }
 
-// Of each quantity the series that deviates most, in the quiet phase: bursts and recovery decide nothing.
+function isOpen({agreement}) {
+  return agreement !== "holds";
+}
+
+function agreementsText(comparisons) {
+  const of = (agreement) => comparisons.filter((one) => one.agreement === agreement).length;
+  const said = ["differs", "open"].filter((agreement) => of(agreement) > 0).map((agreement) => `${of(agreement)} ${agreement === "open" ? "open" : "differ"}`);
+  return said.join(", ") || "all hold";
+}
+
+// What edges need from an input to an output, over all signals and paths: the least and the most.
+function skewRow(name, comparisons, tolerance) {
+  const least = comparisons.filter((one) => one.quantity.startsWith("least delay"));
+  const largest = comparisons.filter((one) => one.quantity.startsWith("largest delay"));
+  if (least.length === 0 || largest.length === 0) return [];
+  const range = (key) => `${number(Math.min(...least.map((one) => one[key])))} to ${number(Math.max(...largest.map((one) => one[key])))} ${least[0].unit}`;
+  return [{test: `${name}: skew, from the edge of an input to that of its output`, result: `${range("measured")} (${agreementsText([...least, ...largest])})`,
+    limit: `${range("theory")} \u00b1 ${number(tolerance)} % ${least[0].whole}`, margin: ""}];
+}
+
+// Cycle time, jitter and the device's own times one by one, of each the series that deviates most, in the quiet
+// phase: bursts and recovery decide nothing. Then the skew of all paths, and how many comparisons more there are.
 function rowsOfMeasurement({ name, content }) {
+  const tolerance = content.tolerance_percent;
   const worst = new Map();
-  for (const one of content.series.flatMap((series) => series.comparisons.map((each) => ({...each, series: series.name})))) {
-    if ((one.phase ?? "quiet") !== "quiet") continue;
-    const known = worst.get(one.quantity);
-    if (!known || Math.abs(one.deviation_percent) > Math.abs(known.deviation_percent)) worst.set(one.quantity, one);
+  const ofPaths = [];
+  for (const series of content.series) {
+    const quiet = series.comparisons.filter((one) => (one.phase ?? "quiet") === "quiet").map((one) => ({...one, series: series.name}));
+    if (quiet.some((one) => one.quantity.startsWith("least delay"))) {
+      ofPaths.push(...quiet);
+      continue;
+    }
+    for (const one of quiet) {
+      const known = worst.get(one.quantity);
+      if (!known || Math.abs(one.deviation_percent) > Math.abs(known.deviation_percent)) worst.set(one.quantity, one);
+    }
   }
   const ofWorst = (one) => {
     const over = one.is_bound ? one.deviation_percent : Math.abs(one.deviation_percent);
-    return {test: `${name}: ${one.quantity}${one.series === one.quantity ? "" : `, ${one.series}`}`, result: `${number(one.measured)} ${one.unit} (${one.agreement})`,
-      limit: `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit} ${one.is_bound ? "+" : "\u00b1"} ${number(content.tolerance_percent)} % ${one.whole}`,
-      margin: `${fixed(content.tolerance_percent - over, 2)} % ${one.whole}`};
+    const test = `${name}: ${one.quantity}`;
+    // A count that has to be 0 has no margin.
+    if (one.theory === 0 && one.unit === "") return {test, result: `${number(one.measured)} (${one.agreement})`, limit: "none", margin: ""};
+    return {test, result: `${number(one.measured)} ${one.unit} (${one.agreement})`,
+      limit: `${one.is_bound ? "at most " : ""}${number(one.theory)} ${one.unit} ${one.is_bound ? "+" : "\u00b1"} ${number(tolerance)} % ${one.whole}`,
+      margin: `${fixed(tolerance - over, 2)} % ${one.whole}`};
   };
-  return [...worst.values()].map(ofWorst);
+  const others = ofPaths.filter((one) => !/^(least|largest) delay/.test(one.quantity));
+  const open = others.filter(isOpen).map((one) => `${one.quantity}, ${one.series}`);
+  return [...[...worst.values()].map(ofWorst), ...skewRow(name, ofPaths, tolerance),
+    ...(others.length === 0 ? [] : [{test: `${name}: ${plural(others.length, "comparison")} more of delays, widths, duty cycles and losses${open.length ? `; not: ${open.slice(0, 3).join("; ")}${open.length > 3 ? " and others" : ""}` : ""}`,
+      result: agreementsText(others), limit: "as the theory of each", margin: ""}])];
 }
 
 // Of `--worst`.
@@ -101,7 +137,9 @@ function rowsOfBursts({ name, content }) {
     const judged = tests.filter((test) => test.came_up);
     const worst = judged.map((test) => test.criterion).sort().at(-1);
     const stops = tests.filter((test) => test.bus_stops > 0).length;
-    const said = [worst && `criterion ${worst}`, stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
+    const references = judged.filter(({reference}) => reference?.came_up).map(({reference}) => reference.criterion).sort().at(-1);
+    const beside = references && (references === worst ? "references alone the same" : `references alone ${references}`);
+    const said = [worst && `criterion ${worst}`, beside, stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
       judged.length < tests.length && `the network did not come up in ${part(tests.length - judged.length, tests.length)} tests`];
     return {test: `${name}: bursts, level ${level}`, result: said.filter(Boolean).join(", "),
       limit: kLimits[content.worst_allowed ?? "B"], margin: ""};
