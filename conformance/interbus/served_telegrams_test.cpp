@@ -82,6 +82,9 @@ const std::set<std::string>& unsayable() {
                                            "no_clock_tolerance",
                                            "master_drives_over_itself",
                                            "samples_late",
+                                           "samples_late_on_the_way_back",
+                                           "takes_glitches_on_the_way_back",
+                                           "drops_a_cut_telegram",
                                            "loses_the_rest_of_a_cut_telegram"};
   return names;
 }

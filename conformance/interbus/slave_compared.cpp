@@ -489,11 +489,9 @@ void change_to_long(interbus::Rules& rules) {
 
 // A delay lasts longer than 32 bits of picoseconds.
 void change_to_slow(interbus::Rules& rules) {
-  rules.bit_rate = 2'000;
-  rules.forward_delay_half_bits = 3;
-  rules.return_delay_half_bits = 40;
+  rules.bit_rate = 100'000;
+  rules.return_delay_half_bits = 999;
   rules.silence_limit = 400 * kernel::kMillisecond;
-  rules.silence_tolerance = 10 * kernel::kMillisecond;
 }
 
 // A bit is no whole number of nanoseconds.
@@ -654,7 +652,8 @@ std::vector<SlaveCase> compared_elsewhere() {
                {{"delays_four_bits", "passed_at_another_time"}}, some_of_all(), change_to_short),
       compared("long_times", "The same with long delays and a long silence.",
                {{"latches_5_ms_late", "outputs_at_another_time"}}, some_of_all(), change_to_long),
-      compared("slow_line", "The same at 2 kbit/s.", {{"delay_in_32_bits", "passed_at_another_time"}},
+      compared("slow_line", "The same at 100 kbit/s with a delay of 5 ms.",
+               {{"delay_in_32_bits", "passed_at_another_time"}},
                each_of({{around_a_reset, 12}, {each_value, 12}}), change_to_slow),
       compared("bits_of_odd_length", "The same at 1.111112 Mbit/s with delays of hundreds of bits.",
                {{"bit_time_in_whole_nanoseconds", "passed_at_another_time"}},

@@ -22,7 +22,7 @@ bool TelegramSpeaker::begin(const iut::CaseBegin& begin, iut::Bench& bench) {
   heard_.rate = rules.bit_rate;
   bench_ = &bench;
   now_ = kernel::kStart;
-  busy_until_.fill(kernel::Time{kernel::Duration::min()});
+  pushed_until_.fill(kernel::Time{kernel::Duration::min()});
   return device_->begin(begin, *this);
 }
 
@@ -85,14 +85,17 @@ void TelegramSpeaker::hand_over(unsigned port) {
 void TelegramSpeaker::transmit(unsigned port, line::Waveform& wave) {
   line::TelegramReceiver receiver(*code_, heard_.rate);
   kernel::Time begin{};
-  kernel::Time& end = busy_until_.at(port);
+  kernel::Time end{kernel::Duration::min()};
+  kernel::Time& pushed_until = pushed_until_.at(port);
   const auto say = [&] {
     if (!said_.empty()) bench_->send(port, begin, said_);
     said_.clear();
   };
   const auto take = [&](const line::Waveform& levels, const line::Telegram& telegram) {
-    const kernel::Time start = std::max({levels.time_of(telegram.level), now_, end});
+    const kernel::Time meant = levels.time_of(telegram.level);
+    const kernel::Time start = std::max({meant, now_, end, pushed_until});
     const iut::Character one = character_of(telegram, start, heard_.rate);
+    if (start > meant) pushed_until = one.busy_until;
     if (start != end) say();
     if (said_.empty()) begin = start;
     said_.push_back(one.data);

@@ -47,7 +47,8 @@ class TelegramSpeaker final : public iut::Device, private iut::Bench {
   const line::TelegramCode* code_ = nullptr;
   line::Waveform heard_;
   std::vector<std::uint16_t> said_;
-  std::array<kernel::Time, TelegramFront::kPorts> busy_until_{};  // by port: what was said before is over
+  // By port: what could not be said when it was meant to be is over. What was meant to overlap overlaps.
+  std::array<kernel::Time, TelegramFront::kPorts> pushed_until_{};
 };
 
 }  // namespace fieldproof::interbus
