@@ -17,7 +17,7 @@ std::shared_ptr<const conformance::PlannedNetwork> plan_references(
 
 // How references did in each test of a campaign, added up; empty where none ran.
 std::string beside_text(const EmcCampaign& campaign);
-// What references differ in from who was tested is not only when bursts met them.
+// Whether references did the same in this test, whenever bursts met them.
 bool is_as_references(const EmcTest& test);
 nlohmann::ordered_json reference_json(const emc::ImmunityResult& reference);
 

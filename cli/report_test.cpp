@@ -111,6 +111,22 @@ TEST_F(ReportVerb, ADocumentHoldsItsCommand) {
   EXPECT_EQ(read("again.json"), first);
 }
 
+// The date is that of the environment, and one that is none is refused before anything is done.
+TEST_F(ReportVerb, ADocumentHoldsItsDate) {
+  Call residual = prepared(
+      {"residual", "--fcs", "CRC-8/SMBUS", "--bits", "40", "--samples", "1000", "--json", "dated.json"});
+  residual.environment["SOURCE_DATE_EPOCH"] = "86400";
+  EXPECT_EQ(residual.run().exit_code, 0);
+  EXPECT_EQ(json("dated.json").at("made").at("date"), "1970-01-02T00:00:00Z");
+  for (const char* wrong : {"yesterday", "-1", "1.5", "99999999999999"}) {
+    residual.environment["SOURCE_DATE_EPOCH"] = wrong;
+    const Called refused = residual.run();
+    EXPECT_EQ(refused.exit_code, 64) << wrong;
+    EXPECT_HOLDS(refused.err, "no number of seconds since 1970");
+    EXPECT_EQ(refused.out, "");
+  }
+}
+
 // A campaign by its file or by its folder, beside the fit of a laboratory's counts.
 TEST_F(ReportVerb, ShowsCampaignsAndFits) {
   write("plan.json", R"({"title": "two seeds", "jobs": [{"verb": "run", "of": "interbus/slave/frame_check/**",

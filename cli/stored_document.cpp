@@ -31,7 +31,8 @@ std::string command_of(const Session& session, const std::string& verb, const st
   return command;
 }
 
-// Now, or what a build that must be reproducible has set for all of its files.
+}  // namespace
+
 std::string date_of_document() {
   constexpr const char* kVariable = "SOURCE_DATE_EPOCH";
   const char* const set = std::getenv(kVariable);
@@ -47,8 +48,6 @@ std::string date_of_document() {
   }
   return utc_text(seconds);
 }
-
-}  // namespace
 
 void write_document(const Session& session, const std::string& verb, const std::string& json,
                     const std::string& more) {

@@ -26,7 +26,7 @@ class ImmunityCourse {
   };
 
   ImmunityCourse() = default;
-  // From here on for so long bursts may come; these did.
+  // Bursts may come from here on for so long.
   ImmunityCourse(kernel::Time on, kernel::Duration length)
       : on_(on), length_(length), windows_(kWindows + 1) {}
 

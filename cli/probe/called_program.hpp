@@ -66,9 +66,12 @@ inline void Call::become_program(int out, int err) const {
   words.push_back(const_cast<char*>(program.c_str()));
   for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
   words.push_back(nullptr);
-  // With it, equal calls write equal documents.
-  std::vector<std::string> lines = {"PATH=/usr/bin:/bin", "TERM=xterm", "SOURCE_DATE_EPOCH=1764201600"};
-  for (const auto& [name, value] : environment) lines.push_back(name + "=" + value);
+  std::map<std::string, std::string> all = environment;
+  all.try_emplace("PATH", "/usr/bin:/bin");
+  all.try_emplace("TERM", "xterm");
+  all.try_emplace("SOURCE_DATE_EPOCH", "1764201600");  // equal calls write equal documents
+  std::vector<std::string> lines;
+  for (const auto& [name, value] : all) lines.push_back(name + "=" + value);
   std::vector<char*> variables;
   for (std::string& line : lines) variables.push_back(line.data());
   variables.push_back(nullptr);

@@ -507,7 +507,7 @@ void change_to_minutes(interbus::Rules& rules) {
   rules.silence_tolerance = 2 * kernel::kSecond;
 }
 
-// No delay at all, and less than a millisecond; the check as its settings have it, of no catalogue's preset.
+// No delay at all, and a limit of less than a millisecond.
 void change_to_least(interbus::Rules& rules) {
   rules.forward_delay_half_bits = 0;
   rules.return_delay_half_bits = 0;

@@ -9,13 +9,8 @@
 namespace fieldproof::conformance {
 namespace {
 
-using valve_bus::Command;
 using valve_bus::HostError;
 using valve_bus::HostErrorKind;
-
-std::vector<std::uint8_t> pc_octets_of(const Command& command) {
-  return {command.id, command.command, command.data0, command.data1};
-}
 
 // One read is on the line, and the FIFO is full of others.
 void fill_up(HostScene& scene) {
@@ -23,7 +18,7 @@ void fill_up(HostScene& scene) {
   scene.order(bench.read_of(scene.id));
   scene.expect_sent();
   for (unsigned n = 0; n < bench.rules().fifo_octets / 4; ++n)
-    bench.write(pc_octets_of(bench.read_of(scene.other)));
+    bench.write(octets_for(bench.read_of(scene.other)));
 }
 
 HostStep full() {
@@ -62,7 +57,7 @@ HostStep lost_with_each_id() {
   return {"the PC orders whole commands to 200, 128 and 0", "each is lost: error 7 with its ID",
           [](HostScene& scene) {
             for (const std::uint8_t id : std::to_array<std::uint8_t>({200, 128, 0})) {
-              scene.bench.write(pc_octets_of(scene.bench.read_of(id)));
+              scene.bench.write(octets_for(scene.bench.read_of(id)));
               expect_error(scene.bench, scene.judge, {id, HostErrorKind::fifo_overflow});
             }
           }};
@@ -73,7 +68,7 @@ HostStep part_of_each_id() {
           "error 8 with the ID each time", [](HostScene& scene) {
             std::size_t count = 0;
             for (const std::uint8_t id : std::to_array<std::uint8_t>({0x00, 0xFF, 0x80, 0x01})) {
-              const auto octets = pc_octets_of(scene.bench.read_of(id));
+              const auto octets = octets_for(scene.bench.read_of(id));
               scene.bench.write(std::span(octets).first(1 + count++ % 2));
               scene.bench.wait(scene.bench.rules().partial_command_limit * 11 / 10);
               expect_error(scene.bench, scene.judge, {id, HostErrorKind::part_of_command});

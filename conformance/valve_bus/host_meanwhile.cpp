@@ -13,10 +13,6 @@ namespace {
 using valve_bus::Command;
 using valve_bus::Response;
 
-std::vector<std::uint8_t> octets_for(const Command& command) {
-  return {command.id, command.command, command.data0, command.data1};
-}
-
 // An octet of the next read in each character of the first one.
 void write_during_a_request(HostScene& scene) {
   HostBench& bench = scene.bench;

@@ -58,6 +58,11 @@ inline HostStep expected(std::string text, std::function<void(HostScene&)> run) 
   return {{}, std::move(text), std::move(run)};
 }
 
+// As the PC writes it; the block check is the host's.
+inline std::vector<std::uint8_t> octets_for(const valve_bus::Command& command) {
+  return {command.id, command.command, command.data0, command.data1};
+}
+
 namespace host_chart {
 
 // The PC orders a read of the node, and the host sends it.

@@ -128,7 +128,7 @@ function rowsOfMeasurement({ name, content }) {
 }
 
 // Of `--worst`.
-const kLimits = {A: "A", B: "B, and no stop", C: "C", D: "none: each criterion passes"};
+const kLimits = {A: "A", B: "B, and no stop", C: "C"};
 
 function rowsOfBursts({ name, content }) {
   const levels = distinct(content.tests.map((test) => test.level));
