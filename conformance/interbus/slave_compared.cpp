@@ -174,7 +174,7 @@ std::vector<Commands> within_a_cycle() {
   for (const SlaveWord word : {SlaveWord::data, SlaveWord::id}) {
     for (const unsigned lost : {4U, 2U, 1U}) {
       SequenceCommand cut = command(word);
-      const unsigned units = vocabulary().words[cut.word].units + 4;
+      const unsigned units = vocabulary().words[cut.word].units;
       for (unsigned n = 1; n <= lost; ++n) cut.faults.push_back({SequenceFaultKind::drop, units - n, 0});
       for (const SequenceCommand& event : events()) {
         all.push_back(
