@@ -75,7 +75,7 @@ std::vector<Commands> each_value() {
 std::vector<Commands> each_fault(SlaveWord word) {
   constexpr std::array<std::uint32_t, 7> kLevels{0, 1, 2, 3, 4, 11, 12};
   std::vector<Commands> all;
-  const unsigned units = vocabulary().words[static_cast<std::size_t>(word)].units + 4;
+  const unsigned units = vocabulary().words[static_cast<std::size_t>(word)].units;
   for (std::uint32_t unit = 0; unit < units; ++unit) {
     SequenceCommand lost = command(word);
     lost.faults.push_back({SequenceFaultKind::drop, unit, 0});
