@@ -5,9 +5,10 @@
 #include <utility>
 
 #include "conformance/interbus/other_codings.hpp"
+#include "conformance/interbus/slave_acts.hpp"
 #include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/slave_families.hpp"
 #include "conformance/interbus/slave_sequence.hpp"
-#include "conformance/interbus/slave_words.hpp"
 #include "conformance/sequence_draw.hpp"
 
 // A slave beside references: each value of each word, each level of a cycle flipped, what happens within a
@@ -16,270 +17,11 @@
 namespace fieldproof::conformance {
 namespace {
 
-using Commands = std::vector<SequenceCommand>;
-
-const SequenceVocabulary& vocabulary() {
-  static const SequenceVocabulary words = without_settings(slave_sequence_role().vocabulary);
-  return words;
-}
-
-SequenceCommand command(SlaveWord word, GivenNumbers given = {}) {
-  return simple_command(vocabulary(), static_cast<std::size_t>(word), given);
-}
-
-SequenceCommand id(std::int64_t orders) {
-  return command(SlaveWord::id, {{0, orders}});
-}
-SequenceCommand check_telegrams() {
-  return command(SlaveWord::telegrams, {{1, 1}, {4, 4}});
-}
-SequenceCommand returns(bool on_branch) {
-  return command(SlaveWord::returns, {{0, on_branch ? 1 : 0}, {5, 2}});
-}
-
-// ---- families of sequences ----
-
-std::vector<std::int64_t> values_of(const SequenceNumber& number) {
-  constexpr std::int64_t kFew = 16;
-  std::vector<std::int64_t> values(number.likely.begin(), number.likely.end());
-  if (number.most - number.least >= kFew) return values;
-  values.clear();
-  for (std::int64_t value = number.least; value <= number.most; ++value) values.push_back(value);
-  return values;
-}
-
-std::vector<Commands> each_value() {
-  std::vector<Commands> all;
-  for (std::size_t word = 0; word < vocabulary().words.size(); ++word) {
-    const auto& numbers = vocabulary().words[word].numbers;
-    for (std::size_t n = 0; n < numbers.size(); ++n) {
-      for (const std::int64_t value : values_of(numbers[n]))
-        all.push_back({command(static_cast<SlaveWord>(word), {{n, value}})});
-    }
-  }
-  for (std::int64_t header = 0; header < 8; ++header) {
-    const GivenNumbers of_telegrams{{0, header & 1}, {1, header >> 1 & 1}, {2, header >> 2}, {4, 2}};
-    all.push_back({command(SlaveWord::telegrams, of_telegrams)});
-    all.push_back({command(SlaveWord::periphery, {{0, header & 1}, {1, header >> 1 & 1}}), id(header),
-                   command(SlaveWord::periphery, {{0, 0}})});
-    for (const std::int64_t branch : {0, 1}) {
-      const GivenNumbers back{{0, branch}, {1, header & 1}, {2, header >> 1 & 1}, {3, header >> 2}};
-      all.push_back({command(SlaveWord::returns, back)});
-      all.push_back({id(branch + 1), command(SlaveWord::returns, back)});
-    }
-  }
-  return all;
-}
-
-// Each header level, stop level and some data levels of each telegram, and each telegram lost.
-std::vector<Commands> each_fault(SlaveWord word) {
-  constexpr std::array<std::uint32_t, 7> kLevels{0, 1, 2, 3, 4, 11, 12};
-  std::vector<Commands> all;
-  const unsigned units = vocabulary().words[static_cast<std::size_t>(word)].units;
-  for (std::uint32_t unit = 0; unit < units; ++unit) {
-    SequenceCommand lost = command(word);
-    lost.faults.push_back({SequenceFaultKind::drop, unit, 0});
-    all.push_back({lost});
-    for (const std::uint32_t level : kLevels) {
-      SequenceCommand flipped = command(word);
-      flipped.faults.push_back({SequenceFaultKind::flip, unit, level});
-      all.push_back({flipped});
-    }
-  }
-  return all;
-}
-std::vector<Commands> each_fault_of_a_data_cycle() {
-  return each_fault(SlaveWord::data);
-}
-std::vector<Commands> each_fault_of_an_id_cycle() {
-  return each_fault(SlaveWord::id);
-}
-
-// Each two telegrams without their stop level, and a level of the data flipped besides.
-std::vector<Commands> two_faults_of_a_data_cycle() {
-  constexpr std::uint32_t kStop = TrainWriter::kStopLevel;
-  constexpr std::uint32_t kData = 6;
-  std::vector<Commands> all;
-  const unsigned units = vocabulary().words[static_cast<std::size_t>(SlaveWord::data)].units;
-  for (std::uint32_t first = 0; first < units; ++first) {
-    for (std::uint32_t second = 0; second < units; ++second) {
-      SequenceCommand faulty = command(SlaveWord::data);
-      faulty.faults.push_back({SequenceFaultKind::flip, first, first < second ? kStop : kData});
-      faulty.faults.push_back({SequenceFaultKind::flip, second, kStop});
-      all.push_back({faulty});
-    }
-  }
-  return all;
-}
-
-// What leaves something behind.
-std::vector<SequenceCommand> events() {
-  return {command(SlaveWord::data),
-          command(SlaveWord::data, {{2, 1}}),
-          command(SlaveWord::data, {{3, 1}}),
-          command(SlaveWord::data, {{4, 1}}),
-          id(0),
-          id(1),
-          id(2),
-          id(3),
-          id(4),
-          command(SlaveWord::id, {{0, 0}, {2, 1}}),
-          command(SlaveWord::id, {{0, 0}, {3, 0x8000}}),
-          command(SlaveWord::id, {{0, 3}, {3, 0xFFFF}}),
-          command(SlaveWord::telegrams),
-          command(SlaveWord::telegrams, {{0, 1}}),
-          check_telegrams(),
-          command(SlaveWord::status, {{0, 3}}),
-          command(SlaveWord::inputs),
-          command(SlaveWord::plugs, {{0, 0}}),
-          command(SlaveWord::plugs, {{1, 0}}),
-          command(SlaveWord::periphery),
-          command(SlaveWord::periphery, {{0, 0}, {1, 1}}),
-          returns(false),
-          returns(true),
-          command(SlaveWord::returns, {{0, 1}, {6, 0}}),
-          command(SlaveWord::silence, {{0, 1}}),
-          command(SlaveWord::silence),
-          command(SlaveWord::silence, {{0, 4}}),
-          command(SlaveWord::kept_alive),
-          command(SlaveWord::power),
-          command(SlaveWord::glitch),
-          command(SlaveWord::cut),
-          command(SlaveWord::lost_in_a_telegram),
-          command(SlaveWord::returned_glitch)};
-}
-
-std::vector<Commands> one_after_another() {
-  std::vector<Commands> all;
-  for (const SequenceCommand& first : events()) {
-    for (const SequenceCommand& second : events()) all.push_back({first, second});
-  }
-  return all;
-}
-
-std::vector<Commands> around_a_reset() {
-  std::vector<Commands> all;
-  for (const SequenceCommand& event : events()) {
-    for (const SlaveWord reset : {SlaveWord::silence, SlaveWord::power}) {
-      all.push_back({event, command(reset)});
-      all.push_back({command(reset), event});
-    }
-  }
-  return all;
-}
-
-// A cycle whose end does not come, with and without its check; then its check comes after all.
-std::vector<Commands> within_a_cycle() {
-  std::vector<Commands> all;
-  for (const SlaveWord word : {SlaveWord::data, SlaveWord::id}) {
-    for (const unsigned lost : {4U, 2U, 1U}) {
-      SequenceCommand cut = command(word);
-      const unsigned units = vocabulary().words[cut.word].units;
-      for (unsigned n = 1; n <= lost; ++n) cut.faults.push_back({SequenceFaultKind::drop, units - n, 0});
-      for (const SequenceCommand& event : events()) {
-        all.push_back(
-            {cut, event,
-             command(SlaveWord::telegrams, {{0, word == SlaveWord::id ? 1 : 0}, {1, 1}, {3, 0}, {4, lost}})});
-      }
-    }
-  }
-  return all;
-}
-
-// The time of a reset of the outgoing bus, from each side, with what may end it or begin it again.
-std::vector<Commands> within_a_reset() {
-  std::vector<Commands> all;
-  for (std::int64_t first = 0; first < 3; ++first) {
-    for (const SequenceCommand& between : {id(0), id(3), id(4), id(7), command(SlaveWord::silence),
-                                           command(SlaveWord::power), command(SlaveWord::data)}) {
-      for (std::int64_t second = 0; second < 3; ++second) {
-        all.push_back({id(4), command(SlaveWord::kept_alive, {{0, first}}), between,
-                       command(SlaveWord::kept_alive, {{0, second}})});
-      }
-    }
-  }
-  return all;
-}
-
-// What only a second thing shows: errors and marks in a cycle that has an order, a stray telegram without its
-// stop level, what is plugged in later, silence in the middle of a cycle.
-std::vector<Commands> rare_orders() {
-  const SequenceCommand wrong = command(SlaveWord::data, {{2, 1}});
-  const SequenceCommand plugged = command(SlaveWord::plugs);
-  const SequenceCommand beyond = command(SlaveWord::kept_alive);
-  std::vector<Commands> all{
-      {command(SlaveWord::telegrams, {{1, 1}, {4, 2}, {5, 0}}), id(0)},
-      {command(SlaveWord::plugs, {{0, 0}, {1, 0}}), id(0), plugged, returns(false), returns(true)},
-      {id(3), plugged, command(SlaveWord::plugs, {{0, 0}, {1, 0}}), plugged, returns(false), returns(true)},
-      {id(4), beyond, id(0), id(4), beyond, id(0), id(4), returns(true), id(0)}};
-  for (const std::int64_t fault : {2, 3}) {
-    const auto with_fault = [fault](std::int64_t orders) {
-      return command(SlaveWord::id, {{0, orders}, {static_cast<std::size_t>(fault), 0x8000}});
-    };
-    all.push_back({with_fault(4), id(0)});
-    all.push_back({wrong, with_fault(8), id(0)});
-    all.push_back({id(4), command(SlaveWord::kept_alive, {{0, 0}}), with_fault(4),
-                   command(SlaveWord::kept_alive, {{0, 0}}), command(SlaveWord::kept_alive, {{0, 1}}),
-                   id(0)});
-  }
-  for (const SlaveWord word : {SlaveWord::data, SlaveWord::id}) {
-    const unsigned units = vocabulary().words[static_cast<std::size_t>(word)].units;
-    for (const std::uint32_t level : {6U, 12U}) {
-      SequenceCommand cut = command(word);
-      cut.faults.push_back({SequenceFaultKind::flip, 1, level});
-      for (unsigned n = 0; n < 4; ++n) cut.faults.push_back({SequenceFaultKind::drop, units - 1 - n, 0});
-      all.push_back({cut, command(SlaveWord::silence), id(0)});
-      all.push_back({cut, id(0)});
-    }
-    // One cycle within another, each whole and each a telegram short.
-    SequenceCommand within = command(word == SlaveWord::data ? SlaveWord::id : SlaveWord::data);
-    SequenceCommand broken = command(word);
-    for (unsigned n = 0; n < 4; ++n) broken.faults.push_back({SequenceFaultKind::drop, units - 1 - n, 0});
-    for (const std::int64_t in_front : {-3, -1, 0}) {
-      within.numbers[4] = in_front;
-      all.push_back({broken, within});
-    }
-  }
-  return all;
-}
-
-// Signs of life are telegrams of each header.
-std::vector<Commands> each_header_keeps_alive() {
-  std::vector<Commands> all;
-  for (std::int64_t header = 0; header < 8; ++header) {
-    const SequenceCommand one =
-        command(SlaveWord::telegrams, {{0, header & 1}, {1, header >> 1 & 1}, {2, header >> 2}});
-    const SequenceCommand half = command(SlaveWord::silence, {{0, 0}});
-    all.push_back({half, one, half, one, half, one, half});
-  }
-  return all;
-}
-
-// 18, and 256: errors in a row that a counter of four or of eight bits does not hold. A station in front
-// would put a right check in the place of a wrong one.
-std::vector<Commands> many_errors() {
-  SequenceCommand wrong = command(SlaveWord::data);
-  wrong.faults.push_back({SequenceFaultKind::flip, 3, 6});
-  return {Commands(18, wrong), Commands(256, wrong)};
-}
-
-// A right ID cycle that ends a little before the end of that time, and one after it.
-std::vector<Commands> at_the_end_of_a_reset() {
-  std::vector<Commands> all;
-  for (const std::int64_t side : {3, 4}) {
-    for (const std::int64_t orders : {0, 1, 2})
-      all.push_back({command(SlaveWord::right_id, {{0, 4}}), command(SlaveWord::kept_alive, {{0, side}}),
-                     command(SlaveWord::right_id, {{0, orders}}), command(SlaveWord::data)});
-  }
-  return all;
-}
-
-// More than a counter of eight bits counts.
-std::vector<Commands> many_cycles() {
-  constexpr std::size_t kThreeEach = 90;
-  return {Commands(kThreeEach, command(SlaveWord::data, {{6, 3}})),
-          Commands(kThreeEach, command(SlaveWord::id, {{0, 0}, {6, 3}}))};
-}
+using slave_families::command;
+using slave_families::Commands;
+using slave_families::id;
+using slave_families::returns;
+using slave_families::vocabulary;
 
 // ---- a case ----
 
@@ -317,97 +59,6 @@ void run_between(SlaveTwins& twins, CaseJudge& judge, const Commands& middle) {
         id(0), command(SlaveWord::data, {{0, 0x8001}, {1, 0x7FFE}}), id(0), command(SlaveWord::data)})
     commands.push_back(one);
   run(twins, judge, commands);
-}
-
-// What shows each coding: in a word that is marked, in one whose check is wrong, in orders and messages.
-std::vector<Commands> all_codings() {
-  std::vector<SequenceCommand> commands;
-  for (const std::int64_t orders : {1, 2, 0}) {
-    commands.push_back(id(orders));
-    commands.push_back(command(SlaveWord::data, {{2, 1}}));
-    commands.push_back(command(SlaveWord::data, {{3, 0x8000}}));
-    // A station in front has put its own check in the place of a wrong one.
-    commands.push_back(command(SlaveWord::data));
-    commands.back().faults.push_back({SequenceFaultKind::flip, 3, 6});
-  }
-  for (const std::int64_t message : {1, 2, 0}) {
-    commands.push_back(command(SlaveWord::periphery, {{0, message & 1}, {1, message >> 1}}));
-    commands.push_back(id(0));
-  }
-  commands.push_back(id(4));
-  commands.push_back(id(0));
-  return {commands};
-}
-
-// What a receiver that samples in the middle of a bit stands, and one that samples beside it does not.
-std::vector<Commands> edges_at_both_limits() {
-  std::vector<Commands> all;
-  for (const std::int64_t longer : {-3, 3}) {
-    for (const std::int64_t per_mille : {-10, 10}) {
-      for (const std::int64_t word : {0x5555, 0x00FE})
-        all.push_back({command(SlaveWord::pulses, {{0, longer}, {1, word}, {2, per_mille}})});
-    }
-  }
-  return all;
-}
-
-// A right cycle in two transmissions, cut at each level of its first telegrams and of its last ones.
-std::vector<Commands> each_cut() {
-  std::vector<Commands> all;
-  for (const std::int64_t telegram : {0, 1, 5, 8, 9}) {
-    for (std::int64_t level = 1; level < line::kDataTelegramLevels; ++level) {
-      for (const std::int64_t gap : {0, 2})
-        all.push_back({command(SlaveWord::parts, {{0, telegram}, {1, level}, {3, gap}})});
-    }
-  }
-  return all;
-}
-
-// Cut anywhere, with what follows it; in three; without the stop level at the cut; lost with the supply.
-std::vector<Commands> other_cuts() {
-  std::vector<Commands> all;
-  for (std::int64_t telegram = 0; telegram < 14; ++telegram) {
-    for (const std::int64_t level : {1, 3, 7, 12}) {
-      const GivenNumbers at{{0, telegram}, {1, level}};
-      all.push_back({command(SlaveWord::cut, at)});
-      all.push_back({command(SlaveWord::lost_in_a_telegram, at), id(0)});
-      for (const std::int64_t levels : {1, 2, 5, 12, 30})
-        all.push_back({command(SlaveWord::three_parts, {{0, telegram}, {1, level}, {3, levels}})});
-    }
-    all.push_back({command(SlaveWord::cut_without_stop, {{0, telegram}})});
-  }
-  return all;
-}
-
-// Glitches between telegrams, and on the ways back.
-std::vector<Commands> other_glitches() {
-  std::vector<Commands> all;
-  for (std::int64_t telegram = 0; telegram < 14; ++telegram)
-    for (const std::int64_t eighths : {1, 2, 3})
-      all.push_back({command(SlaveWord::glitch_within, {{0, telegram}, {2, eighths}})});
-  for (const std::int64_t out2 : {0, 1})
-    for (const std::int64_t eighths : {1, 2, 3})
-      all.push_back({command(SlaveWord::returned_glitch, {{0, out2}, {1, eighths}})});
-  return all;
-}
-
-std::vector<Commands> returned_edges_at_both_limits() {
-  std::vector<Commands> all;
-  for (const std::int64_t out2 : {0, 1}) {
-    for (const std::int64_t longer : {-3, 3}) {
-      for (const std::int64_t per_mille : {-10, 10})
-        all.push_back(
-            {command(SlaveWord::returned_pulses, {{0, out2}, {1, 0x55}, {2, longer}, {3, per_mille}})});
-    }
-  }
-  return all;
-}
-
-std::vector<Commands> clock_at_the_inputs() {
-  return {{command(SlaveWord::clock)}};
-}
-std::vector<Commands> other_signs_of_life() {
-  return {{command(SlaveWord::kept_alive_without_stop)}};
 }
 
 struct Share {
@@ -461,7 +112,9 @@ void drawn(SlaveBench& bench, CaseJudge& judge) {
 
 // Everything with other settings, some of it.
 std::function<void(SlaveBench&, CaseJudge&)> some_of_all() {
-  return each_of({{each_value, 20, 200}, {one_after_another, 6, 200}, {within_a_reset, 9}});
+  return each_of({{slave_families::each_value, 20, 200},
+                  {slave_families::one_after_another, 6, 200},
+                  {slave_families::within_a_reset, 9}});
 }
 
 // ---- other settings ----
@@ -553,7 +206,8 @@ std::vector<SlaveCase> cases_of_other_codings() {
   for (const OtherCoding& coding : other_codings()) {
     all.push_back(compared(coding.id, fmt::format("The same with {}.", coding.setting),
                            {{std::string(coding.mutant), std::string(coding.reason)}},
-                           each_of({{all_codings, 1}, {each_value, 2, 60}}), coding.change));
+                           each_of({{slave_families::all_codings, 1}, {slave_families::each_value, 2, 60}}),
+                           coding.change));
   }
   return all;
 }
@@ -564,45 +218,50 @@ std::vector<SlaveCase> compared_as_usual() {
       compared("each_value_of_each_word", "Each word of sequences with each boundary value," + after,
                {{"interface_switches_inside_cycle", "telegram_not_passed"},
                 {"takes_half_a_status_word", "octet_wrong"}},
-               each_of({{each_value, 160}})),
+               each_of({{slave_families::each_value, 160}})),
       compared("each_fault_of_a_data_cycle", "A data cycle with a level flipped or a telegram lost," + after,
                {{"clears_outputs_on_rejected_cycle", "outputs_wrong"}},
-               each_of({{each_fault_of_a_data_cycle, 36}})),
+               each_of({{slave_families::each_fault_of_a_data_cycle, 112}})),
       compared("each_fault_of_an_id_cycle", "An ID cycle with a level flipped or a telegram lost," + after,
-               {{"id_octets_swapped", "octet_wrong"}}, each_of({{each_fault_of_an_id_cycle, 36}})),
+               {{"id_octets_swapped", "octet_wrong"}},
+               each_of({{slave_families::each_fault_of_an_id_cycle, 96}})),
       compared("one_thing_after_another", "Each two of all that leaves something behind," + after,
-               {{"message_without_error", "octet_wrong"}}, each_of({{one_after_another, 40}})),
+               {{"message_without_error", "octet_wrong"}},
+               each_of({{slave_families::one_after_another, 40}})),
       compared("around_a_reset",
                "All that leaves something behind, before and after silence or a loss of supply," + after,
-               {{"latches_late", "outputs_at_another_time"}}, each_of({{around_a_reset, 120}})),
+               {{"latches_late", "outputs_at_another_time"}},
+               each_of({{slave_families::around_a_reset, 120}})),
       compared("within_a_cycle", "Something between a cycle whose end is lost and that end," + after,
-               {{"check_not_reset_between_cycles", "octet_wrong"}}, each_of({{within_a_cycle, 90}})),
+               {{"check_not_reset_between_cycles", "octet_wrong"}},
+               each_of({{slave_families::within_a_cycle, 90}})),
       compared("within_a_reset_of_the_outgoing_bus",
                "ID cycles, silence and supply at both ends of the time of control_reset," + after,
                {{"outgoing_reset_clears_outputs", "outputs_wrong"},
                 {"keeps_all_without_supply", "telegram_added"}},
-               each_of({{within_a_reset, 63}})),
+               each_of({{slave_families::within_a_reset, 63}})),
       compared("silence_within_a_reset_of_the_outgoing_bus",
                "Silence that resets the slave while it keeps the outgoing bus in reset, then an ID cycle.",
                {{"reset_ends_outgoing_reset", "octet_wrong"}}, silence_in_a_reset),
       compared("each_cut_of_a_cycle", "A data cycle in two transmissions without a gap," + after,
-               {{"loses_the_rest_of_a_cut_telegram", "outputs_wrong"}}, each_of({{each_cut, 24}})),
+               {{"loses_the_rest_of_a_cut_telegram", "outputs_wrong"}},
+               each_of({{slave_families::each_cut, 24}})),
       compared("two_faults_of_a_data_cycle",
                "A data cycle with two telegrams without a stop level, or one and a wrong level," + after,
                {{"second_missing_stop_takes_the_error_back", "octet_wrong"}},
-               each_of({{two_faults_of_a_data_cycle, 60}})),
+               each_of({{slave_families::two_faults_of_a_data_cycle, 60}})),
       compared(
           "other_cuts_of_a_cycle",
           "A data cycle whose transmission ends within a telegram, alone or as the supply goes; in three "
           "transmissions; cut where a stop level is missing," +
               after,
-          {{"drops_a_cut_telegram", "outputs_wrong"}}, each_of({{other_cuts, 60}})),
+          {{"drops_a_cut_telegram", "outputs_wrong"}}, each_of({{slave_families::other_cuts, 60}})),
       compared("other_glitches",
                "A low pulse that is no start level between the telegrams of a cycle, and on the ways back," +
                    after,
                {{"start_bit_not_validated", "outputs_wrong"},
                 {"takes_glitches_on_the_way_back", "telegram_added"}},
-               each_of({{other_glitches, 24}})),
+               each_of({{slave_families::other_glitches, 24}})),
       compared("returned_edges_at_both_limits",
                "Telegrams come back at 1 % beside the bit rate whose edges lie 15 % of a bit beside their "
                "places," +
@@ -610,36 +269,39 @@ std::vector<SlaveCase> compared_as_usual() {
                {{"samples_late_on_the_way_back", "octet_wrong"}},
                [](SlaveBench& bench, CaseJudge& judge) {
                  bench.require_line_interface();
-                 each_of({{returned_edges_at_both_limits, 8}})(bench, judge);
+                 each_of({{slave_families::returned_edges_at_both_limits, 8}})(bench, judge);
                }),
       compared("inputs_of_the_start_level", "A clock ticks at all inputs while data cycles come," + after,
                {{"samples_a_telegram_late", "inputs_of_another_instant"}},
-               each_of({{clock_at_the_inputs, 1}})),
+               each_of({{slave_families::clock_at_the_inputs, 1}})),
       compared("telegrams_without_stop_are_signs_of_life",
                "Nothing but status telegrams without a stop level beyond the limit of silence," + after,
-               {{"without_stop_no_sign_of_life", "outputs_wrong"}}, each_of({{other_signs_of_life, 1}})),
+               {{"without_stop_no_sign_of_life", "outputs_wrong"}},
+               each_of({{slave_families::other_signs_of_life, 1}})),
       compared("at_the_end_of_a_reset_of_the_outgoing_bus",
                "ID cycles that end 3/16 of the silence tolerance before and after the time of control_reset,"
                " then data cycles.",
-               {{"outgoing_reset_a_quarter_short", "octet_wrong"}}, each_of({{at_the_end_of_a_reset, 6}})),
+               {{"outgoing_reset_a_quarter_short", "octet_wrong"}},
+               each_of({{slave_families::at_the_end_of_a_reset, 6}})),
       compared("edges_at_both_limits",
                "A data cycle at 1 % beside the bit rate whose edges lie 15 % of a bit beside their places," +
                    after,
                {{"samples_late", "outputs_wrong"}},
                [](SlaveBench& bench, CaseJudge& judge) {
                  bench.require_line_interface();
-                 each_of({{edges_at_both_limits, 8}})(bench, judge);
+                 each_of({{slave_families::edges_at_both_limits, 8}})(bench, judge);
                }),
       compared(
           "rare_orders",
           "Orders, messages and interfaces with an error, a mark or a silence in the very cycle," + after,
-          {{"obeys_a_marked_id_cycle", "octet_wrong"}}, each_of({{rare_orders, 40}})),
+          {{"obeys_a_marked_id_cycle", "octet_wrong"}}, each_of({{slave_families::rare_orders, 40}})),
       compared("each_header_keeps_alive", "Telegrams of one header are the only signs of life," + after,
-               {{"silence_counts_data_only", "outputs_wrong"}}, each_of({{each_header_keeps_alive, 8}})),
+               {{"silence_counts_data_only", "outputs_wrong"}},
+               each_of({{slave_families::each_header_keeps_alive, 8}})),
       compared("many_errors", "18 and 256 cycles in a row with a wrong check," + after,
-               {{"counts_errors_in_8_bits", "octet_wrong"}}, each_of({{many_errors, 2}})),
+               {{"counts_errors_in_8_bits", "octet_wrong"}}, each_of({{slave_families::many_errors, 2}})),
       compared("many_cycles", "270 data cycles and 270 ID cycles," + after,
-               {{"loses_every_200th_cycle", "outputs_wrong"}}, each_of({{many_cycles, 2}})),
+               {{"loses_every_200th_cycle", "outputs_wrong"}}, each_of({{slave_families::many_cycles, 2}})),
       compared("drawn_sequences", "Sequences of all words at random.",
                {{"delays_four_bits", "passed_at_another_time"}}, drawn)};
 }
@@ -654,21 +316,26 @@ std::vector<SlaveCase> compared_elsewhere() {
                {{"latches_5_ms_late", "outputs_at_another_time"}}, some_of_all(), change_to_long),
       compared("slow_line", "The same at 100 kbit/s with a delay of 5 ms.",
                {{"delay_in_32_bits", "passed_at_another_time"}},
-               each_of({{around_a_reset, 12}, {each_value, 12}}), change_to_slow),
+               each_of({{slave_families::around_a_reset, 12}, {slave_families::each_value, 12}}),
+               change_to_slow),
       compared("bits_of_odd_length", "The same at 1.111112 Mbit/s with delays of hundreds of bits.",
                {{"bit_time_in_whole_nanoseconds", "passed_at_another_time"}},
-               each_of({{each_value, 16}, {one_after_another, 6}}), change_to_odd_rate),
+               each_of({{slave_families::each_value, 16}, {slave_families::one_after_another, 6}}),
+               change_to_odd_rate),
       compared("times_of_minutes", "Silences and resets with a silence limit of 700 s.",
                {{"counts_microseconds_in_32_bits", "outputs_wrong"}},
-               each_of({{around_a_reset, 16}, {at_the_end_of_a_reset, 2}}), change_to_minutes),
+               each_of({{slave_families::around_a_reset, 16}, {slave_families::at_the_end_of_a_reset, 2}}),
+               change_to_minutes),
       compared("least_times", "The same without delays and with a silence limit of 0.8 ms.",
                {{"a_delay_at_least", "passed_at_another_time"}},
-               each_of({{each_value, 12}, {around_a_reset, 12}}), change_to_least),
+               each_of({{slave_families::each_value, 12}, {slave_families::around_a_reset, 12}}),
+               change_to_least),
       compared("parts_of_milliseconds", "Silences and resets with a silence limit of 5.5 ms, to 0.1 ms.",
                {{"silence_limit_in_whole_milliseconds", "outputs_at_another_time"}},
-               each_of({{around_a_reset, 16}, {at_the_end_of_a_reset, 2}}), change_to_parts_of_milliseconds),
+               each_of({{slave_families::around_a_reset, 16}, {slave_families::at_the_end_of_a_reset, 2}}),
+               change_to_parts_of_milliseconds),
       compared("many_words", "The same with 256 words.", {{"loses_input_words_above_16", "octet_wrong"}},
-               each_of({{each_value, 8, 60}}), change_to_many_words, kCodeOfMany)};
+               each_of({{slave_families::each_value, 8, 60}}), change_to_many_words, kCodeOfMany)};
 }
 
 }  // namespace

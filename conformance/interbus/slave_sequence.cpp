@@ -6,9 +6,9 @@
 #include <array>
 
 #include "conformance/interbus/declarations.hpp"
+#include "conformance/interbus/slave_acts.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_codings.hpp"
-#include "conformance/interbus/slave_words.hpp"
 #include "conformance/sequence_settings.hpp"
 #include "harness/field/walk.hpp"
 #include "harness/kernel/error.hpp"

@@ -3,10 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "conformance/interbus/slave_twins.hpp"
 #include "conformance/sequence.hpp"
 
-// The words of sequences for a slave, and what they do to it and to its twins.
+// The words of sequences for a slave; what they do to it and to its twins: slave_acts.hpp.
 namespace fieldproof::conformance {
 
 // In the order of the vocabulary.
@@ -40,33 +39,18 @@ enum class SlaveWord : std::uint8_t {
   kept_alive_without_stop,
 };
 
+// What the number "orders" consists of, whatever the places of these in a control word are.
+namespace slave_orders {
+inline constexpr std::int64_t kRemoteOff = 1;
+inline constexpr std::int64_t kBranchOff = 2;
+inline constexpr std::int64_t kReset = 4;
+inline constexpr std::int64_t kAcknowledge = 8;
+}  // namespace slave_orders
+
+// Octets of a cycle in front of the slave's own: loopback word, and a word for a station after each
+// interface.
+inline constexpr std::size_t kFrontOfSlave = 6;
+
 std::vector<SequenceWord> slave_words();
-
-// What a word does; each leaves what was driven in the views.
-class SlaveActs {
- public:
-  explicit SlaveActs(SlaveTwins& twins) : twins_(twins) {}
-
-  // What the twins cannot tell is judged here.
-  void act(const SequenceCommand& command, CaseJudge& judge);
-
- private:
-  void send(const SequenceCommand& command, void (*append)(SlaveBench&, const SequenceCommand&));
-  void drive_at_rate(const SequenceCommand& command, CaseJudge& judge);
-  void drive_parts(const SequenceCommand& command);
-  void drive_pulses(const SequenceCommand& command, CaseJudge& judge);
-  void show_clock(CaseJudge& judge);
-  void lose_supply(kernel::Duration duration);
-  void periphery(const SequenceCommand& command);
-  void be_silent(std::int64_t how_long);
-  void keep_alive(std::int64_t how_long);
-  void keep_alive_without_stop();
-  kernel::Duration time_of_right_id();
-  void note_what_came(bool is_id_cycle);
-
-  SlaveTwins& twins_;
-  kernel::Time last_telegram_{};  // at the slave's receiver, and the end of the last ID cycle there
-  kernel::Time last_id_cycle_{};
-};
 
 }  // namespace fieldproof::conformance
