@@ -38,6 +38,8 @@ class LineBench : public CaseBench, private segment::Station {
   }
   // The IUT was given something from outside of the line.
   void refresh_iut() { segment().refresh(seat_); }
+  // A bench that does something at an instant by itself (`next_time`) has another one now.
+  void refresh_tester() { segment().refresh(tester_seat_); }
 
   segment::MediumPort& place() { return *place_; }
   segment::MediumPort& tester() { return *tester_; }

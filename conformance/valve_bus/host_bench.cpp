@@ -166,6 +166,17 @@ void HostBench::write(std::span<const std::uint8_t> octets) {
   refresh_iut();
 }
 
+void HostBench::write_later(std::span<const std::uint8_t> octets, kernel::Duration later) {
+  written_later_.assign(octets.begin(), octets.end());
+  written_later_at_ = now() + later;
+  refresh_tester();
+}
+
+void HostBench::on_time(kernel::Time) {
+  written_later_at_ = kernel::kNever;
+  write(written_later_);
+}
+
 void HostBench::order(const valve_bus::Command& command) {
   write({command.id, command.command, command.data0, command.data1});
 }

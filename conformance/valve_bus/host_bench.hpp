@@ -102,6 +102,8 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   void write(std::span<const std::uint8_t> octets);
   void write(std::initializer_list<std::uint8_t> octets) { write(std::span(octets.begin(), octets.size())); }
   void order(const valve_bus::Command& command);
+  // At that instant, whatever is on the line then; nothing else is to be written later.
+  void write_later(std::span<const std::uint8_t> octets, kernel::Duration later);
   std::size_t fifo_room() const { return host_->fifo_room(); }
   bool has_overflowed() const { return host_->has_overflowed(); }
   valve_bus::HostCounters counters(std::uint8_t id) const { return host_->counters(id); }
@@ -181,6 +183,9 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   void on_response(const valve_bus::HostResponse& response, kernel::Time when) override;
   void on_error(const valve_bus::HostError& error, kernel::Time when) override;
 
+  void on_time(kernel::Time now) override;
+  kernel::Time next_time() const override { return written_later_at_; }
+
   void expect_reachable() const;
   void adopt_rate(unsigned dip);
   void set_power(bool is_on);
@@ -205,6 +210,8 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   std::deque<HostEvent> told_;
   std::vector<std::optional<valve_bus::Command>> writes_;
   std::deque<Seen> history_;  // the last of all
+  std::vector<std::uint8_t> written_later_;
+  kernel::Time written_later_at_ = kernel::kNever;
 };
 
 }  // namespace fieldproof::conformance

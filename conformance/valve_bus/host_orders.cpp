@@ -85,8 +85,9 @@ void order_torn(HostSide& side, unsigned count, kernel::Duration between) {
   std::vector<std::uint8_t> octets;
   append_order(octets, numbered_order(side.bench(), 5, side.next_number()));
   side.order_octets(std::span(octets).first(count), 1);
+  // A refresh may be on the line at that instant.
+  side.bench().write_later(std::span(octets).subspan(count), between);
   side.wait(between);
-  side.order_octets(std::span(octets).subspan(count), 0);
 }
 
 void serve_late(HostSide& side, std::uint8_t id, const valve_bus::Response& response) {
