@@ -205,6 +205,12 @@ TEST_F(MeasureVerb, ASignalThatTakesLongerThanAskedForSaysSo) {
   EXPECT_EQ(enough.out.find("longer than asked for"), std::string::npos) << enough.out;
 }
 
+TEST_F(MeasureVerb, ASignalThatIsTooFastForTheCycleSaysSo) {
+  const Called called = call({"measure", "valve_bus", "--signal", "25Hz,50Hz", "--duration", "1s"});
+  EXPECT_HOLDS(called.out, "50 Hz: above 34.11 Hz a pulse may fall between two samples");
+  EXPECT_EQ(called.out.find("25 Hz: above"), std::string::npos) << called.out;
+}
+
 TEST_F(MeasureVerb, TakesOneDisturbanceAtATime) {
   for (const std::string bursts :
        {"1..4", "0", "5", "two", "2,50kHz", "2,5kHz,plus", "2,5kHz,+,-", "x:0", "x:1000..4500:inf", ""}) {

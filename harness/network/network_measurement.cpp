@@ -389,6 +389,19 @@ std::vector<Comparison> compare_path(const SignalRecord& record, const PathRecor
 
 namespace {
 
+// Of a cycle that is too long for each pulse to be sampled, as the closed forms have it.
+void add_what_is_too_fast(measure::Measurement& measurement, const SignalRecord& record) {
+  const measure::Frequency frequency = record.settings.wave.frequency;
+  double highest = frequency.hertz();
+  for (const PathRecord& path : record.paths)
+    if (path.path.theory) highest = std::min(highest, measure::highest_frequency_hz(path.path.theory->cycle));
+  if (highest >= frequency.hertz()) return;
+  measurement.conditions.push_back(
+      {"faster than the cycle",
+       fmt::format("{}: above {:.4g} Hz a pulse may fall between two samples and be lost",
+                   measure::describe(frequency), highest)});
+}
+
 // A signal that took longer than was asked for, and a bus that did not last as long.
 void add_remarks(measure::Measurement& measurement, const SignalRecord& record,
                  const MeasurementSettings& settings) {
@@ -486,6 +499,7 @@ measure::Measurement measure_network(const MakeNetwork& make, const MeasurementS
     const SignalRecord& record = *recorded;
     cycles.add(record);
     add_remarks(measurement, record, settings);
+    add_what_is_too_fast(measurement, record);
     add_what_is_wrong(measurement, record);
     for (const PathRecord& path : record.paths) {
       measurement.series.push_back(series_of(record, path));
