@@ -119,11 +119,11 @@ function(fieldproof_tests_in_parts name folder environment)
   set(parts 8)
   math(EXPR last "${parts} - 1")
   foreach(part RANGE ${last})
-    add_test(NAME ${folder}/part_${part} COMMAND ${name} "--gtest_filter=-*SerialRuns*:BrowserTest*")
+    add_test(NAME ${folder}/part_${part} COMMAND ${name} "--gtest_filter=-*SerialRuns*")
     set_tests_properties(${folder}/part_${part} PROPERTIES TIMEOUT 1200
       ENVIRONMENT "${environment};GTEST_TOTAL_SHARDS=${parts};GTEST_SHARD_INDEX=${part}")
   endforeach()
-  add_test(NAME ${folder}/wall_clock COMMAND ${name} "--gtest_filter=*SerialRuns*")
+  add_test(NAME ${folder}/wall_clock COMMAND ${name} "--gtest_filter=*SerialRuns*-Browser*")
   set_tests_properties(${folder}/wall_clock PROPERTIES TIMEOUT 600 RUN_SERIAL ON ENVIRONMENT "${environment}")
 endfunction()
 

@@ -17,7 +17,7 @@ AjvJudgement drive(const std::filesystem::path& page, const std::string& environ
                            " 2>&1");
 }
 
-TEST(BrowserTest, APageWithEverythingServesItsReader) {
+TEST(BrowserSerialRuns, APageWithEverythingServesItsReader) {
   if (run_for_judgement("node --version 2>/dev/null").exit_code != 0) {
     GTEST_SKIP() << "the page is driven by node, which is not installed; run script/setup";
   }
@@ -28,7 +28,7 @@ TEST(BrowserTest, APageWithEverythingServesItsReader) {
   EXPECT_EQ(judgement.exit_code, 0) << judgement.output;
 }
 
-TEST(BrowserTest, TwoRunsSideBySideAndAHistoryServeTheirReader) {
+TEST(BrowserSerialRuns, TwoRunsSideBySideAndAHistoryServeTheirReader) {
   if (run_for_judgement("node --version 2>/dev/null").exit_code != 0) {
     GTEST_SKIP() << "the page is driven by node, which is not installed; run script/setup";
   }

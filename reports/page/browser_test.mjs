@@ -48,8 +48,11 @@ function expectEqual(actual, expected, what) {
 const browser = await chromium.launch({executablePath: browserPath, args: ["--no-sandbox", "--disable-gpu"]});
 let failures = 0;
 
+const whole = (page) => page.waitForSelector("body[data-is-whole]");
+
 // Opens the page anew for each check; whatever it complains about or asks for is a failure of the check.
 async function check(name, act, options = {}, hash = "") {
+  const begin = Date.now();
   const context = await browser.newContext({viewport: {width: 1280, height: 900}, ...options});
   const page = await context.newPage();
   page.setDefaultTimeout(90000);
@@ -62,9 +65,10 @@ async function check(name, act, options = {}, hash = "") {
   });
   try {
     await page.goto(address + hash);
+    await whole(page);
     await act(page);
     expect(trouble.length === 0, trouble.join("; "));
-    console.log(`ok      ${name}`);
+    console.log(`ok      ${name} (${Date.now() - begin} ms)`);
   } catch (error) {
     failures += 1;
     console.log(`FAILED  ${name}: ${error.message}`);
@@ -72,7 +76,6 @@ async function check(name, act, options = {}, hash = "") {
   await context.close();
 }
 
-const whole = (page) => page.waitForSelector("body[data-is-whole]");
 const shownCases = (page) => page.locator("tr.case:visible").count();
 const caseLine = (page, id) => page.locator(`tr.case[id="${id}"]`);
 const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
@@ -95,7 +98,6 @@ await check("the plan of faults says what it did, and what of it never hit", asy
 });
 
 await check("the page is whole, asks for nothing and holds no other script", async (page) => {
-  await whole(page);
   expectEqual(await page.locator("script").count(), 3, "scripts");
   expectEqual(await page.locator("img, iframe, object, embed, [onerror], [onload], [style*=url]").count(), 0, "foreign elements");
   expectEqual(await page.locator("tr.case").count(), cases.length, "lines of cases");
@@ -303,7 +305,6 @@ if (withTimeLine) {
 }
 
 await check("each document has its section, its charts and its command", async (page) => {
-  await whole(page);
   const ids = {"fieldproof/measurement/1": "timing", "fieldproof/emc/1": "immunity", "fieldproof/residual/1": "residual",
     "fieldproof/publication/2": "publication", "fieldproof/matrix/1": "matrix", "fieldproof/campaign/1": "campaign", "fieldproof/emc_fit/1": "fit", "fieldproof/fuzz/1": "fuzz"};
   for (const schema of sections) {
@@ -324,7 +325,6 @@ await check("each document has its section, its charts and its command", async (
 
 // What is drawn differs by shape, too; here that the legend tells it, and that what never changes has no chart.
 await check("cycle times stand over time, with bursts, phases, closed form and the longest", async (page) => {
-  await whole(page);
   const courses = data.documents.filter(({ content }) => content.schema === "fieldproof/measurement/1")
       .flatMap(({ content }) => content.series).map(({ course }) => course).filter((course) => course?.runs.some(({ points }) => points.length));
   const pointsOf = ({ runs }) => runs.flatMap(({ points }) => points);
@@ -350,7 +350,6 @@ await check("cycle times stand over time, with bursts, phases, closed form and t
 
 // The band is the one thing that is warm at the top of the plot.
 await check("bands of bursts are drawn where bursts were", async (page) => {
-  await whole(page);
   const course = data.documents.flatMap(({ content }) => content.series ?? []).map((one) => one.course).find((one) => one?.runs.some(({ bursts }) => bursts.length));
   if (!course) return;
   const figure = page.locator("figure.course").first();
@@ -368,7 +367,6 @@ await check("bands of bursts are drawn where bursts were", async (page) => {
 });
 
 await check("a search of fuzz tells its finding with input and command, what was tried, and how coverage grew", async (page) => {
-  await whole(page);
   const searches = data.documents.filter(({ content }) => content.schema === "fieldproof/fuzz/1");
   for (const [at, { content }] of searches.entries()) {
     const place = page.locator("#fuzz > article").nth(at);
@@ -385,7 +383,6 @@ await check("a search of fuzz tells its finding with input and command, what was
 });
 
 await check("two runs that are compared show what changed first, and both time lines of a case", async (page) => {
-  await whole(page);
   expectEqual(await page.locator("#comparison").count(), data.comparison ? 1 : 0, "comparisons");
   if (!data.comparison) return;
   const text = await page.locator("#comparison").innerText();
@@ -398,7 +395,6 @@ await check("two runs that are compared show what changed first, and both time l
 });
 
 await check("a history tells what is flaky, what began to fail and what was left out", async (page) => {
-  await whole(page);
   expectEqual(await page.locator("#history").count(), data.history ? 1 : 0, "histories");
   if (!data.history) return;
   const text = await page.locator("#history").textContent();
@@ -408,7 +404,6 @@ await check("a history tells what is flaky, what began to fail and what was left
 });
 
 await check("a campaign tells each finding with its command, its decision, and the criterion of each level and pulses", async (page) => {
-  await whole(page);
   const campaigns = data.documents.filter(({ content }) => content.schema === "fieldproof/campaign/1");
   for (const [at, { content }] of campaigns.entries()) {
     const place = page.locator("#campaign > article").nth(at);
@@ -427,7 +422,6 @@ await check("a campaign tells each finding with its command, its decision, and t
 for (const [name, options] of [["a phone", {viewport: {width: 360, height: 740}, isMobile: true, hasTouch: true}],
   ["a narrow window", {viewport: {width: 700, height: 900}}], ["a desk", {}]]) {
   await check(`nothing is wider than ${name}`, async (page) => {
-    await whole(page);
     if (withTimeLine) await openFirst(page);
     expect((await overflow(page)) <= 0, `${await overflow(page)} px`);
   }, options);
@@ -463,7 +457,6 @@ await check("paper shows every case that did not pass, the first ones opened, al
 });
 
 await check("tables of all numbers stand in the appendix on paper, and in their places on a screen", async (page) => {
-  await whole(page);
   const raw = await page.locator("table.raw, table.many").count();
   expectEqual(await page.locator("#appendix table").count(), 0, "tables that are away on a screen");
   await page.emulateMedia({media: "print"});
@@ -481,7 +474,6 @@ await check("nothing is wider than paper", async (page) => {
 
 for (const [name, options] of [["light", {}], ["dark", {colorScheme: "dark"}], ["phone", {viewport: {width: 390, height: 844}, isMobile: true}]]) {
   await check(`accessibility has no serious finding: ${name}`, async (page) => {
-    await whole(page);
     if (withTimeLine) await openFirst(page);
     // From outside of the page's own policy, as an extension of the browser does.
     await page.evaluate(readFileSync(axe, "utf8"));
