@@ -160,6 +160,14 @@ FfLasModel::Found FfLasModel::close_question(Time now) {
   return LinkObjection{"does_not_wait", "an answer, or silence for V(MRD) x V(ST), or the end of the token"};
 }
 
+// V(MSO) and V(MID) before what is due next, with an octet for rounding.
+bool FfLasModel::has_time_for_td() const {
+  constexpr std::size_t kOctetsOfTd = 9;  // with its check
+  const fieldbus_dll::LinkRules& link = rules().link;
+  const std::int64_t free = rules().scheduling_overhead_octets + 2 * link.inter_pdu_delay_octets + 1;
+  return silent_since_ + times(free) + frame_time(link, kOctetsOfTd) <= due();
+}
+
 FfLasModel::Found FfLasModel::say(const DrivenDlpdu& dlpdu) {
   const Duration gap = times(rules().link.inter_pdu_delay_octets);
   if (!is_scheduler_) {
@@ -172,10 +180,11 @@ FfLasModel::Found FfLasModel::say(const DrivenDlpdu& dlpdu) {
   if (dlpdu.begin >= silent_until())
     return LinkObjection{"line_left_silent", "silence for less than V(ST) x 16"};
   Found found;
-  if (std::exchange(is_asked_for_time_, false)) {
-    found = has_las_code(dlpdu, rules().codes.td, 0)
-                ? say_time(dlpdu)
-                : LinkObjection{"time_request_ignored", "a TD: it was asked for the time"};
+  const bool is_asked = std::exchange(is_asked_for_time_, false);
+  if (is_asked && has_las_code(dlpdu, rules().codes.td, 0)) {
+    found = say_time(dlpdu);
+  } else if (is_asked && has_time_for_td()) {
+    found = LinkObjection{"time_request_ignored", "a TD: it was asked for the time"};
   } else {
     found = close_question(dlpdu.begin);
     if (!found) found = say_dlpdu(dlpdu);

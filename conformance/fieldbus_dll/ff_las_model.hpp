@@ -112,6 +112,7 @@ class FfLasModel {
   bool is_open(std::uint8_t node) const;
   bool is_polled(unsigned node) const;
   bool has_to_probe() const;
+  bool has_time_for_td() const;
 
   void leave();
   void take(kernel::Time now);

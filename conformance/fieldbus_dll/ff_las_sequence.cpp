@@ -215,11 +215,13 @@ class FfLasSequenceRun {
   }
 
   void ask_time(const DrivenDlpdu& pt, const SequenceCommand& command) {
-    if (say_as(command, {bench_.rules().codes.ct, pt.octet(1)})) {
-      model_.hear_time_request(bench_.now());
-      (void)next_said();
-    }
-    return_token();
+    if (!say_as(command, {bench_.rules().codes.ct, pt.octet(1)})) return return_token();
+    model_.hear_time_request(bench_.now());
+    const DrivenDlpdu said = next_said();
+    if (!is_of(said, bench_.rules().codes.td)) return answer(said);
+    // What it would return with has to end within its token.
+    const kernel::Time over = pt.end + bench_.octets(duration_in(pt));
+    if (bench_.now() + bench_.least_gap() + bench_.frame(1) <= over) return_token();
   }
 
   void submit(Priority priority, std::size_t size) {
@@ -263,8 +265,10 @@ class FfLasSequenceRun {
     }
     const kernel::Time free = bench_.now() + bench_.least_gap() + bench_.octets(1);
     const DrivenDlpdu one = next_said();
+    const auto& codes = bench_.rules().codes;
+    // Nothing else may have had time, and a TD have become due later.
     const bool may_wait =
-        is_cd(bench_, one) || is_of(one, bench_.rules().codes.idle) || is_of(one, bench_.rules().codes.dt3);
+        is_cd(bench_, one) || is_of(one, codes.idle) || is_of(one, codes.dt3) || is_of(one, codes.td);
     judge_.expect(may_wait || one.begin <= free, "holder_not_stopped", [&] {
       return Mismatch{{"the token is taken back as soon as the line is free"}, one.text(), one.begin};
     });

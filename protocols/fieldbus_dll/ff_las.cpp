@@ -109,7 +109,8 @@ void FfLas::on_dlpdu(const FfDlpdu& dlpdu, const Place& place) {
     if (returns_token(dlpdu) && is_from_awaited(dlpdu)) on_back(place.end);
   }
   if (dlpdu.type == FfType::ct) {
-    answer(time_dlpdu(place.end + silence_before_sending()), place);
+    const kernel::Time begin = place.end + silence_before_sending();
+    if (const FfDlpdu td = time_dlpdu(begin); has_time(td, {}, begin)) answer(td, place);
     return;
   }
   FfStation::on_dlpdu(dlpdu, place);

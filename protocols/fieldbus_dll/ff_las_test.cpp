@@ -246,6 +246,25 @@ TEST_F(FfLasTest, KeepsTheLineActiveWhenItMayNotPassTheToken) {
   EXPECT_EQ(count(all, "CD normal to 1120"), 10U);
 }
 
+// A TD is 12 octets with what is around it, V(MSO) 16 and V(MID) 8: from the end of a CT to the item 44.
+TEST_F(FfLasTest, AnswersACtThatHasTimeBeforeTheItemThatIsDue) {
+  FfConfiguration configuration = master(0x10, true);
+  // 200 ms are 781.25 octet durations.
+  configuration.schedule = {.version = 1, .macrocycle = 32'000, .items = {{6'400, 0x1120, Priority::normal}}};
+  configuration.rules.time_distribution_period = 3'600 * kernel::kSecond;
+  for (const bool has_time : {true, false}) {
+    FfTestLink link;
+    FfLas las(configuration);
+    link.add(las);
+    const std::int64_t ct_octets = 2 + 2 + 3;
+    link.run_to(781 - ct_octets - (has_time ? 45 : 43));
+    const std::string before = link.heard();
+    link.say({.type = FfType::ct, .node = 0x22});
+    link.run_to(781);
+    EXPECT_EQ(count(link.heard(), " TD "), has_time ? 1U : 0U) << before;
+  }
+}
+
 TEST_F(FfLasTest, RefusesAScheduleThatCannotBe) {
   FfConfiguration configuration = master(0x10, true);
   configuration.schedule = {.version = 1, .macrocycle = 100, .items = {{100, 0x1120, Priority::normal}}};
