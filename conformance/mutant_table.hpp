@@ -54,6 +54,7 @@ class MutantTable {
     return all;
   }
 
+  const std::vector<Row>& rows() const { return rows_; }
   // Throws kernel::Error(usage) for a name that is not there, with the nearest ones.
   const Make& maker(std::string_view name) const {
     std::vector<std::string_view> names;

@@ -16,11 +16,16 @@ using fieldbus_dll::FfConfiguration;
 constexpr std::uint8_t kDeviceNode = 0x21;
 constexpr std::uint8_t kMasterNode = 0x10;
 
+bool is_scheduler_in(const FfNeeds& needs, const FfSetting& setting) {
+  return setting.is_link_master && !needs.is_in_standby;
+}
+
 FfConfiguration configuration_of(const FfNeeds& needs, const FfSetting& setting) {
   FfConfiguration configuration;
-  configuration.node = setting.is_link_master ? kMasterNode : kDeviceNode;
-  configuration.begins_as_scheduler = setting.is_link_master;
-  if (!setting.is_link_master) {
+  const bool is_scheduler = is_scheduler_in(needs, setting);
+  configuration.node = is_scheduler ? kMasterNode : kDeviceNode;
+  configuration.begins_as_scheduler = is_scheduler;
+  if (!is_scheduler) {
     configuration.published = {FfBench::kPublished, FfBench::kPublished + 1};
     configuration.subscribed = {FfBench::kSubscribed};
   }
@@ -43,12 +48,13 @@ FfBench::FfBench(const FfNeeds& needs, const FfSetting& setting)
     : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume,
                 setting.link_stresses),
       configuration_(configuration_of(needs, setting)),
+      is_link_master_(setting.is_link_master),
       station_(setting.make_device(configuration_)) {
   start_recording(setting, rules());
   station_->wire(attach_station(*station_, setting.plan), user_);
   has_started_ = station_->start(now());
   refresh_iut();
-  if (setting.is_link_master || !needs.is_live) return;
+  if (is_scheduler_in(needs, setting) || !needs.is_live) return;
   wait(octets(20));
   send({rules().codes.pn, node()});
   // The latest answer is over by then.

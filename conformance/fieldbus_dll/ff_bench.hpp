@@ -20,6 +20,7 @@ struct FfNeeds {
   // Of the configuration of the IUT; null: as it is.
   std::function<void(fieldbus_dll::FfConfiguration&)> change{};
   bool is_live = true;  // a device that has been probed and activated when the case begins
+  bool is_in_standby = false;  // a link master that is what a device is
 };
 
 // Who plays, and how.
@@ -86,6 +87,7 @@ class FfBench final : public LinkBench {
   const fieldbus_dll::FfRules& rules() const { return configuration_.rules; }
   const fieldbus_dll::FfConfiguration& configuration() const { return configuration_; }
   std::uint8_t node() const { return configuration_.node; }
+  bool is_link_master() const { return is_link_master_; }
   bool has_started() const { return has_started_; }
   void set_supply(bool is_on);
   std::string words(const DrivenDlpdu& dlpdu) const override;
@@ -132,6 +134,7 @@ class FfBench final : public LinkBench {
 
  private:
   fieldbus_dll::FfConfiguration configuration_;
+  bool is_link_master_;
   FfUpperTester user_;
   bool begins_circulation_ = false;
   std::set<fieldbus_dll::FfAddress> destinations_;

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "conformance/fieldbus_dll/ff_expect.hpp"
+#include "conformance/fieldbus_dll/ff_standby.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -86,6 +87,8 @@ const std::vector<FfCase>& ff_cases() {
                                           ff_link_times_cases, ff_endings_cases,     ff_request_cases,
                                           ff_reception_cases,  ff_transmission_cases};
     auto all = cases_of<FfCase>(kChapters, ff_details());
+    const std::vector<FfCase> in_standby = ff_standby_cases(all);
+    all.insert(all.end(), in_standby.begin(), in_standby.end());
     all.push_back(ff_canary("ff_device"));
     all.push_back(ff_canary("ff_las"));
     return all;

@@ -1,11 +1,18 @@
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <string>
+
 #include "conformance/fieldbus_dll/ff_device_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_ending_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_sequence_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_request_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_sequence_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/ff_standby.hpp"
 #include "conformance/fieldbus_dll/ff_transmission_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/link_seeded_faults.hpp"
 
@@ -455,9 +462,34 @@ const FfMutants& ff_device_mutants() {
   return table;
 }
 
+namespace {
+
+bool is_caught_in_standby(const std::string& mutant) {
+  return std::ranges::any_of(ff_cases(), [&](const FfCase& one) {
+    return one.needs.is_in_standby &&
+           std::ranges::any_of(one.test_case.catches,
+                               [&](const MustCatch& caught) { return caught.mutant == mutant; });
+  });
+}
+
+// The mutants of a device as a link master that is in standby, and never anything else.
+std::vector<FfRow> ff_standby_rows() {
+  static std::deque<std::string> texts;
+  std::vector<FfRow> rows;
+  for (const FfRow& row : ff_device_mutants().rows()) {
+    const std::string& name = texts.emplace_back(fmt::format("{}{}", kStandbyMutant, row.name));
+    if (!is_caught_in_standby(name)) continue;
+    const std::string& text = texts.emplace_back(fmt::format("in standby: {}", row.description));
+    rows.push_back({name, row.label, text, row.make});
+  }
+  return rows;
+}
+
+}  // namespace
+
 const FfMutants& ff_las_mutants() {
   static const FfMutants table("ff_las", {ff_schedule_rows, ff_circulation_rows, ff_live_list_rows,
-                                          ff_claim_rows, ff_las_sequence_rows});
+                                          ff_claim_rows, ff_las_sequence_rows, ff_standby_rows});
   return table;
 }
 
