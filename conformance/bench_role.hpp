@@ -49,6 +49,7 @@ struct CaseRole {
   // The items of its PICS are its settings: what a sequence begins with is declared.
   bool are_settings_declared = false;
   std::optional<SequenceRow<Case>> sequences{};
+  std::optional<SequenceRow<Case>> more_sequences{};
 
   // The same but for who plays.
   Setting setting(RunningCase& run_of_case) const {
@@ -81,10 +82,7 @@ struct CaseRole {
   Case find(const TestCase& test_case) const {
     for (const Case& one : cases())
       if (one.test_case.id == test_case.id) return one;
-    return of_sequences(test_case);
-  }
-  // A case of sequences is none of `cases`, and has no procedure yet.
-  Case of_sequences(const TestCase& test_case) const {
+    // One of sequences is none of `cases`, and has no procedure yet.
     Case blank{test_case, nullptr};
     if (sequences) blank.needs = sequences->needs;
     return blank;
@@ -128,20 +126,20 @@ RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
       return role.declared_pics(role.find(test_case), role.setting(run));
     };
   }
-  if (role.sequences) {
-    row.sequences = role.sequences->role();
-    row.run_sequence = [role, run_case](const Sequence& sequence, RunningCase& run) {
-      Case one = role.of_sequences(run.test_case());
-      one.procedure = [&sequence, &vocabulary = role.sequences->role().vocabulary,
-                       run_sequence = role.sequences->run](auto& bench, CaseJudge& judge) {
-        if (!sequence.settings.empty())
-          judge.begin_step("with " + settings_text(sequence.settings, vocabulary));
-        run_sequence(sequence, bench, judge);
-      };
-      // Who searches counts the silent ones.
-      return run_case(one, run, false);
-    };
-  }
+  const auto sequences_of = [run_case](const SequenceRow<Case>& made) -> RoleSequences {
+    return {made.role(), [made, run_case](const Sequence& sequence, RunningCase& run) {
+              Case one{run.test_case(), nullptr, made.needs};
+              one.procedure = [&](auto& bench, CaseJudge& judge) {
+                if (!sequence.settings.empty())
+                  judge.begin_step("with " + settings_text(sequence.settings, made.role().vocabulary));
+                made.run(sequence, bench, judge);
+              };
+              // Who searches counts the silent ones.
+              return run_case(one, run, false);
+            }};
+  };
+  if (role.sequences) row.sequences = sequences_of(*role.sequences);
+  if (role.more_sequences) row.more_sequences = sequences_of(*role.more_sequences);
   return row;
 }
 

@@ -16,16 +16,20 @@ namespace {
 using judge::Verdict;
 
 constexpr std::string_view kFolder = "/derived/";
+constexpr std::string_view kFolderOfCheck = "/check/";
 constexpr std::string_view kOfImplementation = "implementation_";  // reasons begin so: it crashed, it hangs
 constexpr std::size_t kMostSaid = 10;                              // commands of a sequence, in a finding
 constexpr std::size_t kFewerIfSanitized = 16;
 constexpr std::size_t kFewestSequences = 3;
 constexpr std::uint64_t kFingerprintFactor = 0x100'0000'01B3;  // of FNV-1a
 
+const DerivedRow& row_of(DerivedKind kind) {
+  return *std::ranges::find(kDerivedRows, kind, &DerivedRow::kind);
+}
+
 TestCase derived_case(const SequenceRole& role, const DerivedRow& row) {
-  const std::string& id = role.test_case.id;
   TestCase one = role.test_case;
-  one.id = fmt::format("{}{}{}", id.substr(0, id.find('/', id.find('/') + 1)), kFolder, row.name);
+  one.id = derived_id(role, row.kind);
   one.purpose = "derived";
   one.stimulus = row.stimulus;
   one.tags = {"derived"};
@@ -165,11 +169,15 @@ class DerivedResult {
 }  // namespace
 
 std::size_t derived_count(DerivedKind kind, Volume volume, std::size_t cost) {
-  const auto row = std::ranges::find(kDerivedRows, kind, &DerivedRow::kind);
-  const std::size_t count =
-      volume == Volume::quick ? std::max(row->quick / cost, kFewestSequences) : row->full;
+  const DerivedRow& row = row_of(kind);
+  const std::size_t count = volume == Volume::quick ? std::max(row.quick / cost, kFewestSequences) : row.full;
   // A sanitizer looks at what the code does, not at how often it holds.
   return kernel::kIsSanitized ? std::max(count / kFewerIfSanitized, kFewestSequences) : count;
+}
+
+std::string derived_id(const SequenceRole& role, DerivedKind kind) {
+  const std::string& id = role.test_case.id;
+  return fmt::format("{}{}{}", id.substr(0, id.find(kFolderOfCheck)), kFolder, row_of(kind).name);
 }
 
 std::vector<TestCase> derived_cases(const SequenceRole& role) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "conformance/derived_sequences.hpp"
@@ -17,6 +18,8 @@ inline constexpr std::size_t kDerivedOnRealLine = 10;  // sequences of a case: e
 // Sequences that a run of this volume takes of a role whose sequences cost so much (SequenceRole::cost).
 std::size_t derived_count(DerivedKind kind, Volume volume, std::size_t cost);
 
+// "PROTOCOL/ROLE/derived/each_unit_spoilt" of "PROTOCOL/ROLE/check/...", whatever stands in front of "check".
+std::string derived_id(const SequenceRole& role, DerivedKind kind);
 // Without those of which the vocabulary gives no sequence.
 std::vector<TestCase> derived_cases(const SequenceRole& role);
 // Nothing: a case of its own.

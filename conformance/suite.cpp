@@ -34,9 +34,10 @@ Suite::Suite(SuiteRows rows, SuiteGiven given) : rows_(std::move(rows)), given_(
       if (is_named_in(left_out, one) && !is_named_in(cases_, one)) continue;
       mutants_.push_back(std::move(one));
     }
-    if (row.sequences) {
-      sequence_roles_.push_back(*row.sequences);
-      for (TestCase& one : derived_cases(*row.sequences)) cases_.push_back(std::move(one));
+    if (row.sequences) sequence_roles_.push_back(row.sequences->role);
+    for (const auto* const sequences : {&row.sequences, &row.more_sequences}) {
+      if (!*sequences) continue;
+      for (TestCase& one : derived_cases((*sequences)->role)) cases_.push_back(std::move(one));
     }
     row.cases.clear();
     row.mutants.clear();
@@ -103,22 +104,25 @@ SequenceVocabulary Suite::vocabulary(const SequenceRole& role, const Setup& setu
 
 Outcome Suite::run_sequence(const SequenceRole& role, const Sequence& sequence, const Setup& setup) const {
   const RoleRow& row = row_of(role.test_case);
-  FIELDPROOF_CHECK(bool(row.run_sequence),
+  FIELDPROOF_CHECK(bool(row.sequences),
                    "a suite runs sequences of the roles that it names: " + role.test_case.id);
   RunningCase run = begin(role.test_case, setup);
   run.use_settings(sequence.settings);
-  Outcome outcome{row.run_sequence(sequence, run), {}};
+  Outcome outcome{row.sequences->run(sequence, run), {}};
   run.keep(outcome);
   outcome.happens_once = run.is_on_real_line();
   return outcome;
 }
 
 judge::CaseResult Suite::run_derived(const RoleRow& row, DerivedKind kind, RunningCase& run) const {
-  const SequenceVocabulary vocabulary = this->vocabulary(*row.sequences, run.setup());
+  const bool is_of_more =
+      row.more_sequences && derived_id(row.more_sequences->role, kind) == run.test_case().id;
+  const RoleSequences& sequences = is_of_more ? *row.more_sequences : *row.sequences;
+  const SequenceVocabulary vocabulary = this->vocabulary(sequences.role, run.setup());
   const std::size_t most =
       run.is_on_real_line()
           ? kDerivedOnRealLine
-          : run.setup().sequences.value_or(derived_count(kind, run.setup().volume, row.sequences->cost));
+          : run.setup().sequences.value_or(derived_count(kind, run.setup().volume, sequences.role.cost));
   const DerivedSequences derived =
       derived_sequences(kind, vocabulary, most, kernel::Random(run.setup().seed).split("derived"));
   return run_derived_case({.test_case = run.test_case(),
@@ -127,7 +131,7 @@ judge::CaseResult Suite::run_derived(const RoleRow& row, DerivedKind kind, Runni
                            .run =
                                [&](const Sequence& sequence) {
                                  run.use_settings(sequence.settings);
-                                 return row.run_sequence(sequence, run);
+                                 return sequences.run(sequence, run);
                                },
                            .most_shrinking_commands = run.is_on_real_line() ? 0 : kShrinkingCommands});
 }

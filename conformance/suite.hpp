@@ -22,6 +22,12 @@ namespace fieldproof::conformance {
 
 class RunningCase;
 
+// Sequences of a role, and how one is run: on a bench of its own; a run of a case may consist of many.
+struct RoleSequences {
+  SequenceRole role;
+  std::function<judge::CaseResult(const Sequence&, RunningCase&)> run;
+};
+
 struct RoleRow {
   std::string name;
   std::vector<TestCase> cases{};
@@ -38,9 +44,8 @@ struct RoleRow {
   std::vector<judge::PicsItem> pics_items{};
   judge::Pics usual_answers{};
   const field::AnyTable* settings = nullptr;
-  std::optional<SequenceRole> sequences{};
-  // On a bench of its own; a run of a case may consist of many.
-  std::function<judge::CaseResult(const Sequence&, RunningCase&)> run_sequence{};
+  std::optional<RoleSequences> sequences{};  // that `check` draws, too
+  std::optional<RoleSequences> more_sequences{};
 };
 
 struct SuiteRows {

@@ -19,7 +19,7 @@ namespace fieldproof::conformance {
 struct FfNeeds {
   // Of the configuration of the IUT; null: as it is.
   std::function<void(fieldbus_dll::FfConfiguration&)> change{};
-  bool is_live = true;  // a device that has been probed and activated when the case begins
+  bool is_live = true;         // a device that has been probed and activated when the case begins
   bool is_in_standby = false;  // a link master that is what a device is
 };
 

@@ -465,11 +465,13 @@ const FfMutants& ff_device_mutants() {
 namespace {
 
 bool is_caught_in_standby(const std::string& mutant) {
-  return std::ranges::any_of(ff_cases(), [&](const FfCase& one) {
-    return one.needs.is_in_standby &&
-           std::ranges::any_of(one.test_case.catches,
-                               [&](const MustCatch& caught) { return caught.mutant == mutant; });
-  });
+  return std::ranges::any_of(ff_standby_sequence_role().derived_catches,
+                             [&](const DerivedCatch& one) { return one.caught.mutant == mutant; }) ||
+         std::ranges::any_of(ff_cases(), [&](const FfCase& one) {
+           return one.needs.is_in_standby &&
+                  std::ranges::any_of(one.test_case.catches,
+                                      [&](const MustCatch& caught) { return caught.mutant == mutant; });
+         });
 }
 
 // The mutants of a device as a link master that is in standby, and never anything else.

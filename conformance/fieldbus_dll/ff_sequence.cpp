@@ -208,6 +208,7 @@ class FfSequenceRun {
   static constexpr kernel::Duration kMinute = 60 * kernel::kSecond;
 
   void execute(const SequenceCommand& command) {
+    keep_active();
     const auto word = static_cast<FfWord>(command.word);
     switch (word) {
       case FfWord::wait:
@@ -269,6 +270,16 @@ class FfSequenceRun {
     for (const Octets& dlpdu : heard) model_.hear(dlpdu, bench_.now());
     if (heard.empty()) model_.hear_noise(bench_.now());
     settle(numbers.back());
+  }
+
+  // A link master in standby claims a link on which nobody says anything.
+  void keep_active() {
+    constexpr std::int64_t kSilentOctets = 150;
+    if (!bench_.is_link_master()) return;
+    kernel::Time silent_since{};
+    if (!bench_.heard().empty()) silent_since = bench_.heard().back().end;
+    if (!bench_.driven().empty()) silent_since = std::max(silent_since, bench_.driven().back().end);
+    if (bench_.now() > silent_since + bench_.octets(kSilentOctets)) send({bench_.rules().codes.idle});
   }
 
   void send(const Octets& octets) {

@@ -5,6 +5,7 @@
 #include "conformance/fieldbus_dll/ff_las_sequence.hpp"
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 #include "conformance/fieldbus_dll/ff_sequence.hpp"
+#include "conformance/fieldbus_dll/ff_standby.hpp"
 #include "conformance/fieldbus_dll/isa_cases.hpp"
 #include "conformance/fieldbus_dll/isa_las_sequence.hpp"
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
@@ -69,7 +70,9 @@ RoleRow ff_las_row() {
               .adjust = [](FfSetting& setting, RunningCase&) { setting.is_link_master = true; },
               .settings = &kFfTable,
               .sequences =
-                  SequenceRow<FfCase>{ff_las_sequence_role, run_ff_las_sequence, ff_las_sequence_needs()}});
+                  SequenceRow<FfCase>{ff_las_sequence_role, run_ff_las_sequence, ff_las_sequence_needs()},
+              .more_sequences = SequenceRow<FfCase>{ff_standby_sequence_role, run_ff_device_sequence,
+                                                    ff_standby_sequence_needs()}});
 }
 
 }  // namespace

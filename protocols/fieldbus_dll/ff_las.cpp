@@ -79,8 +79,10 @@ void FfLas::leave(kernel::Time now) {
 // ---- what is heard ----
 
 void FfLas::on_dlpdu(const FfDlpdu& dlpdu, const Place& place) {
-  if (dlpdu.type == FfType::tl && is_mine(dlpdu.node)) {
-    if (dlpdu.schedule_version != configuration().schedule.version) return;
+  const bool is_for_it = dlpdu.type == FfType::tl && is_mine(dlpdu.node);
+  const bool is_right_version = dlpdu.schedule_version == configuration().schedule.version;
+  if (is_for_it && !is_right_version && is_scheduler()) return;
+  if (is_for_it && is_right_version) {
     take_link(place.end);
     tell(FfEventKind::taken, node(), place.end);
     return;
