@@ -12,6 +12,7 @@ namespace fieldproof::conformance {
 namespace {
 
 using fieldbus_dll::FfAddress;
+using fieldbus_dll::FfEventKind;
 using fieldbus_dll::kFinalBit;
 using fieldbus_dll::kPriorityBits;
 using fieldbus_dll::Priority;
@@ -100,6 +101,7 @@ void FfLasModel::hear_time_request(Time end) {
 void FfLasModel::hear_probe_response(Time end) {
   hear_answer(end);
   const std::uint8_t node = question_->node;
+  expect_event(FfEventKind::node_found, node);
   nodes_.at(node) = {.is_live = true, .live_since = circulations_};
   to_activate_[node] = circulations_;
   list_changed_ = circulations_;
@@ -107,7 +109,32 @@ void FfLasModel::hear_probe_response(Time end) {
 
 void FfLasModel::hear_noise(Time end) {
   silent_since_ = end;
-  if (question_) question_->is_noisy = true;
+  if (!question_) return;
+  question_->is_noisy = true;
+  are_events_certain_ = false;
+}
+
+// ---- what its user is told ----
+
+void FfLasModel::expect_event(FfEventKind kind, std::uint8_t node) {
+  if (are_events_certain_) events_.push_back({kind, node});
+}
+
+// Of what was not answered to its end.
+void FfLasModel::expect_event_of(const Question& question) {
+  if (question.is_answered) return;
+  switch (question.asked) {
+    case Asked::compels:
+      if (!question.is_heard) expect_event(FfEventKind::reply_missing, question.node);
+      return;
+    case Asked::passes_token:
+      return expect_event(question.is_heard ? FfEventKind::token_reclaimed : FfEventKind::token_missed,
+                          question.node);
+    case Asked::probes:
+      return;
+    case Asked::transfers:
+      return expect_event(FfEventKind::transfer_failed, question.node);
+  }
 }
 
 // ---- who is live ----
@@ -128,7 +155,9 @@ void FfLasModel::count_token(const Question& token) {
   const bool is_missed = !token.is_heard && !token.is_noisy;
   node.fewest_misses = is_missed ? node.fewest_misses + 1 : 0;
   node.most_misses = token.is_heard ? 0 : node.most_misses + 1;
-  if (node.fewest_misses >= misses_of_no_node()) remove(token.node);
+  if (node.fewest_misses < misses_of_no_node()) return;
+  remove(token.node);
+  expect_event(FfEventKind::node_removed, token.node);
 }
 
 FfLasModel::Found FfLasModel::pass_over(unsigned first, unsigned behind_last) {
@@ -155,7 +184,8 @@ FfLasModel::Found FfLasModel::close_question(Time now) {
     const Time taken_back = has_end ? over + times(rules().link.slot_time_octets) : over;
     free_latest_ = std::max(free_latest_, std::min(is_late, taken_back));
   }
-  if (question.is_token) count_token(question);
+  expect_event_of(question);
+  if (question.asked == Asked::passes_token) count_token(question);
   if (now + kLinkRounding >= free_since_) return std::nullopt;
   return LinkObjection{"does_not_wait", "an answer, or silence for V(MRD) x V(ST), or the end of the token"};
 }
@@ -224,7 +254,7 @@ FfLasModel::Found FfLasModel::say_cd(const DrivenDlpdu& cd) {
   if (cd.begin > latest + kLinkRounding)
     return LinkObjection{"compelled_late", fmt::format("until {}", kernel::describe(latest))};
   ++items_done_;
-  question_ = Question{.node = fieldbus_dll::node_of(item.address)};
+  question_ = Question{.node = fieldbus_dll::node_of(item.address), .asked = Asked::compels};
   return std::nullopt;
 }
 
@@ -240,7 +270,8 @@ FfLasModel::Found FfLasModel::say_token(const DrivenDlpdu& pt) {
   show_live(node);
   last_token_ = node;
   probes_ = 0;
-  question_ = Question{.node = node, .token_ends = pt.end + times(grant_said(pt)), .is_token = true};
+  question_ =
+      Question{.node = node, .asked = Asked::passes_token, .token_ends = pt.end + times(grant_said(pt))};
   return found;
 }
 
@@ -344,7 +375,7 @@ FfLasModel::Found FfLasModel::say_probe(const DrivenDlpdu& pn) {
     last_token_.reset();
     circulation_begin_.reset();
   }
-  question_ = Question{.node = node};
+  question_ = Question{.node = node, .asked = Asked::probes};
   if (is_next) return std::nullopt;
   return LinkObjection{"probes_out_of_order", "the next address, ascending"};
 }

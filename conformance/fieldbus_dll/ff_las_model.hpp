@@ -54,6 +54,7 @@ class FfLasModel {
   void hear_time_request(kernel::Time end);
   void hear_probe_response(kernel::Time end);
   void hear_noise(kernel::Time end);
+  void hear_none(kernel::Time end) { silent_since_ = end; }  // no DLPDU, and surely taken for none
   // Of another scheduler, or of who becomes one.
   void hear_scheduler(const Octets& octets, kernel::Time end);
 
@@ -71,6 +72,10 @@ class FfLasModel {
   std::uint64_t ticks_at(kernel::Time now) const;
   // It may not be silent until then.
   kernel::Time silent_until() const;
+  // What its user must have been told, up to where a faulty answer leaves that open.
+  const std::vector<fieldbus_dll::FfEvent>& events() const { return events_; }
+  // Nothing else was to be told by now.
+  bool are_events_complete() const { return !question_ && are_events_certain_; }
   bool is_surely_live(std::uint8_t node) const { return nodes_.at(node).is_live && !is_open(node); }
 
  private:
@@ -84,12 +89,13 @@ class FfLasModel {
     unsigned most_misses = 0;
     bool was_left_open = false;  // when it left: whether it was removed before is not told
   };
+  enum class Asked : std::uint8_t { compels, passes_token, probes, transfers };
   struct Question {
     std::uint8_t node;
+    Asked asked;
     kernel::Time token_ends = kernel::kNever;  // of anything else
-    bool is_token = false;
-    bool is_answered = false;  // to its end
-    bool is_heard = false;     // something of its holder
+    bool is_answered = false;                  // to its end
+    bool is_heard = false;                     // something of its holder
     bool is_noisy = false;
   };
   struct Reported {
@@ -124,6 +130,8 @@ class FfLasModel {
   Found say_own_buffer(const DrivenDlpdu& dt3);
   Found say_transfer(const DrivenDlpdu& tl);
   Found close_question(kernel::Time now);
+  void expect_event(fieldbus_dll::FfEventKind kind, std::uint8_t node);
+  void expect_event_of(const Question& question);
   void count_token(const Question& token);
   void remove(std::uint8_t node);
   void show_live(std::uint8_t node);
@@ -156,6 +164,8 @@ class FfLasModel {
   kernel::Time free_since_ = kernel::kStart;   // it may have begun what it says now
   kernel::Time free_latest_ = kernel::kStart;  // a token is taken back a V(ST) after its end at the latest
   std::optional<Question> question_;
+  std::vector<fieldbus_dll::FfEvent> events_;
+  bool are_events_certain_ = true;
   bool is_asked_for_time_ = false;
   kernel::Time time_told_ = kernel::kStart;
   std::optional<Reported> told_;

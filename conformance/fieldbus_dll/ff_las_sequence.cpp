@@ -39,10 +39,27 @@ class FfLasSequenceRun {
     const kernel::Time last = end + static_cast<std::int64_t>(sequence.commands.size()) * kMacrocycle;
     while (bench_.now() < end || (model_.end() && bench_.now() < last)) answer(next_said());
     object(model_.end(), "silence", bench_.now());
+    judge_events();
     std::vector<Octets> delivered;
     for (const auto& one : bench_.user().data) delivered.push_back(one.data);
     judge_.expect(delivered == data_, "data_not_delivered", "the user gets the data of each DT1 for it",
                   "other data, or none");
+  }
+
+  // In their order; what is told of the last question may be told already.
+  void judge_events() {
+    const auto& told = bench_.user().events;
+    const auto& wanted = model_.events();
+    const auto text = [](const fieldbus_dll::FfEvent& one) {
+      return fmt::format("{} of {:02X}", text_of(one.kind), one.node);
+    };
+    const auto [other, right] = std::ranges::mismatch(told, wanted);
+    if (right != wanted.end())
+      judge_.fail("event_wrong", {{fmt::format("event {}: {}", right - wanted.begin() + 1, text(*right))},
+                                  other == told.end() ? "no other event" : text(*other),
+                                  bench_.now()});
+    if (other != told.end() && model_.are_events_complete())
+      judge_.fail("event_wrong", {{"no other event"}, text(*other), bench_.now()});
   }
 
  private:
@@ -172,7 +189,9 @@ class FfLasSequenceRun {
 
   void refuse(const DrivenDlpdu&, const SequenceCommand& command) {
     const auto sr = static_cast<std::uint8_t>(bench_.rules().codes.sr | fieldbus_dll::kFinalBit);
-    if (say_as(command, {sr, 1})) model_.hear_answer(bench_.now());
+    const auto reason = static_cast<std::uint8_t>(command.numbers[1]);
+    if (!say_as(command, {sr, reason})) return;
+    reason > 1 ? model_.hear_none(bench_.now()) : model_.hear_answer(bench_.now());
   }
 
   void publish(const DrivenDlpdu& cd, const SequenceCommand& command) {
@@ -188,11 +207,12 @@ class FfLasSequenceRun {
   void use(const DrivenDlpdu& pt, const SequenceCommand& command) {
     const Octets data = bench_.numbered_data(static_cast<std::size_t>(command.numbers[0]));
     const bool is_final = command.numbers[1] == 1;
+    const bool is_left_open = command.numbers[1] == 2;
     const bool is_whole = say_as(command, dt1_of(pt, data, is_final));
     if (is_whole) data_.push_back(data);
     if (is_whole && is_final) return model_.hear_answer(bench_.now());
     if (is_whole) model_.hear_data(bench_.now());
-    if (!is_final) return_token();
+    if (!is_final && !is_left_open) return_token();
   }
 
   void return_token() { model_.hear_answer(say({bench_.rules().codes.rt})); }
@@ -296,16 +316,16 @@ class FfLasSequenceRun {
   // ---- other schedulers ----
 
   // While it waits for an answer another has the link.
-  void displace(const Octets& octets) {
+  void displace_by(const std::function<Octets()>& octets) {
     if (!next_that([&](const DrivenDlpdu& one) {
-          return is_pt(bench_, one) || is_of(one, bench_.rules().codes.pn);
+          return is_pt(bench_, one) || is_cd(bench_, one) || is_of(one, bench_.rules().codes.pn);
         }))
       return;
     bench_.wait(bench_.least_gap());
-    say_as_scheduler(octets);
+    say_as_scheduler(octets());
   }
   void displace() {
-    if (model_.is_scheduler()) displace({bench_.rules().codes.cl, kSecondOfLas});
+    if (model_.is_scheduler()) displace_by([&] { return Octets{bench_.rules().codes.cl, kSecondOfLas}; });
   }
   void say_as_scheduler(const Octets& octets) {
     bench_.send(octets);
@@ -331,8 +351,8 @@ class FfLasSequenceRun {
 
   void second(const SequenceCommand& command) {
     const auto kind = static_cast<OtherScheduler>(command.numbers[0]);
-    const bool is_of_scheduler = kind != OtherScheduler::idles && kind != OtherScheduler::tells_time;
-    if (model_.is_scheduler() && is_of_scheduler) return displace(of_scheduler(kind, command.numbers));
+    if (model_.is_scheduler() && kind != OtherScheduler::idles)
+      return displace_by([&] { return of_scheduler(kind, command.numbers); });
     displace();
     wait_in_standby(command.numbers[3]);
     if (!model_.is_scheduler()) say_as_scheduler(of_scheduler(kind, command.numbers));

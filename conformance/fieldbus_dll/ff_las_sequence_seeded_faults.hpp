@@ -118,4 +118,31 @@ class SecondTimeRequestIgnored : public FfLas {
   bool was_asked_ = false;
 };
 
+// ---- what its user is told ----
+
+using fieldbus_dll::FfEventKind;
+
+class EventsOfItself : public FfLas {
+  using FfLas::FfLas;
+  void tell(FfEventKind kind, std::uint8_t node, Time now) override {
+    FfLas::tell(kind, kind == FfEventKind::reply_missing ? this->node() : node, now);
+  }
+};
+
+class EachEventOnce : public FfLas {
+  using FfLas::FfLas;
+  void tell(FfEventKind kind, std::uint8_t node, Time now) override {
+    if (told_.insert(kind).second) FfLas::tell(kind, node, now);
+  }
+  std::set<FfEventKind> told_;
+};
+
+// It waits for the end of the token, or for silence.
+class DataReturnNoToken : public FfLas {
+  using FfLas::FfLas;
+  bool is_from_awaited(const FfDlpdu& dlpdu) const override {
+    return dlpdu.type != FfType::dt1 && FfLas::is_from_awaited(dlpdu);
+  }
+};
+
 }  // namespace fieldproof::conformance::ff_seeded_faults

@@ -12,6 +12,7 @@ namespace fieldproof::conformance {
 namespace {
 
 using fieldbus_dll::FfDlpdu;
+using fieldbus_dll::FfEventKind;
 using fieldbus_dll::FfType;
 using kernel::Time;
 
@@ -31,6 +32,9 @@ std::uint64_t FfLasModel::ticks_at(Time now) const {
 // ---- who has the link ----
 
 void FfLasModel::leave() {
+  const bool has_transferred = question_ && question_->asked == Asked::transfers;
+  has_transferred ? expect_event(FfEventKind::transferred, question_->node)
+                  : expect_event(FfEventKind::left, configuration_.node);
   is_scheduler_ = false;
   is_asked_for_time_ = false;
   question_.reset();
@@ -70,7 +74,9 @@ void FfLasModel::hear_scheduler(const Octets& octets, Time end) {
   const auto dlpdu = ff_dlpdu_of(octets, rules());
   if (!dlpdu) return;
   if (dlpdu->type == FfType::tl && dlpdu->node == configuration_.node) {
-    if (dlpdu->schedule_version == configuration_.schedule.version) take(end);
+    if (dlpdu->schedule_version != configuration_.schedule.version) return;
+    take(end);
+    expect_event(FfEventKind::taken, configuration_.node);
     return;
   }
   if (is_scheduler_) leave();
@@ -107,6 +113,7 @@ FfLasModel::Found FfLasModel::say_in_standby(const DrivenDlpdu& dlpdu) {
   if (dlpdu.begin > latest + kLinkRounding)
     return LinkObjection{"claim_late", "a claim within V(MICD) after V(ST) x V(TN)"};
   take(dlpdu.begin);
+  expect_event(FfEventKind::claimed, configuration_.node);
   return std::nullopt;
 }
 
@@ -117,7 +124,7 @@ FfLasModel::Found FfLasModel::say_transfer(const DrivenDlpdu& tl) {
   const Octets right{rules().codes.tl, heir, static_cast<std::uint8_t>(version >> 8),
                      static_cast<std::uint8_t>(version)};
   if (tl.octets != right) return LinkObjection{"not_transferred", fmt::format("a TL for {:02X}", heir)};
-  question_ = Question{.node = heir};
+  question_ = Question{.node = heir, .asked = Asked::transfers};
   return std::nullopt;
 }
 

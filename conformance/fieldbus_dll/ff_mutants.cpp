@@ -450,6 +450,10 @@ std::vector<FfRow> ff_las_sequence_rows() {
        mutant<AllAdmittedBehindTwoSlow>()},
       {"second_time_request_ignored", "", "sends the time to who asks once",
        mutant<SecondTimeRequestIgnored>()},
+      {"reply_missing_of_itself", "", "reports its own node where a publisher did not reply",
+       mutant<EventsOfItself>()},
+      {"each_event_once", "", "reports each kind of event once", mutant<EachEventOnce>()},
+      {"data_return_no_token", "", "takes F in a DT1 for nothing", mutant<DataReturnNoToken>()},
       {"own_data_newest_first", "", "sends what its user submitted last", mutant<NewestFirst<FfLas>>()},
   });
 }
