@@ -1,12 +1,15 @@
 #include "conformance/sequence_settings.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <utility>
 
 #include "harness/field/boundaries.hpp"
 #include "harness/field/walk.hpp"
 #include "harness/kernel/check.hpp"
 #include "harness/kernel/error.hpp"
+#include "harness/kernel/time.hpp"
 
 namespace fieldproof::conformance {
 bool means_setting(std::string_view text, std::string_view name) {
@@ -19,6 +22,11 @@ bool is_one_of(std::span<const std::string_view> names, std::string_view name) {
   return std::ranges::any_of(names, [&](std::string_view one) { return means_setting(one, name); });
 }
 
+// A little more than 16 bits of microseconds hold, 32 of nanoseconds, 16 of milliseconds, 32 of microseconds.
+constexpr std::array<std::int64_t, 4> kBeyondTimers{
+    65'537 * kernel::kMicrosecond.count(), 4'294'968 * kernel::kMicrosecond.count(),
+    65'537 * kernel::kMillisecond.count(), 4'294'968 * kernel::kMillisecond.count()};
+
 SequenceSetting setting_of(const field::Leaf& leaf, std::span<const SettingBound> bounds) {
   field::Row row = leaf.row;
   const auto bound = std::ranges::find(bounds, leaf.name, &SettingBound::name);
@@ -30,6 +38,10 @@ SequenceSetting setting_of(const field::Leaf& leaf, std::span<const SettingBound
                           .simple = leaf.number(),
                           .likely = field::boundaries_of(row, leaf.object).inside,
                           .is_likely_only = leaf.row.kind == field::Kind::choice};
+  for (const std::int64_t time : kBeyondTimers) {
+    const bool is_duration = leaf.row.kind == field::Kind::duration;
+    if (is_duration && time > setting.least && time < setting.most) setting.likely.push_back(time);
+  }
   std::erase(setting.likely, setting.simple);
   return setting;
 }

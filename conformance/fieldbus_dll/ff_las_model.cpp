@@ -212,7 +212,7 @@ FfLasModel::Found FfLasModel::say(const DrivenDlpdu& dlpdu) {
   Found found;
   const bool is_asked = std::exchange(is_asked_for_time_, false);
   if (is_asked && has_las_code(dlpdu, rules().codes.td, 0)) {
-    found = say_time(dlpdu);
+    found = say_time(dlpdu, true);
   } else if (is_asked && has_time_for_td()) {
     found = LinkObjection{"time_request_ignored", "a TD: it was asked for the time"};
   } else {
@@ -234,7 +234,7 @@ FfLasModel::Found FfLasModel::say_dlpdu(const DrivenDlpdu& dlpdu) {
   const bool has_priority = (dlpdu.octet(0) & kPriorityBits) != 0;
   if (has_priority && has_las_code(dlpdu, codes.pt, kFinalBit | kPriorityBits)) return say_token(dlpdu);
   if (has_las_code(dlpdu, codes.pn, 0)) return say_probe(dlpdu);
-  if (has_las_code(dlpdu, codes.td, 0)) return say_time(dlpdu);
+  if (has_las_code(dlpdu, codes.td, 0)) return say_time(dlpdu, false);
   if (has_las_code(dlpdu, codes.dt1, kLongOfLas | kFinalBit | kPriorityBits)) return say_data(dlpdu);
   if (has_las_code(dlpdu, codes.tl, 0)) return say_transfer(dlpdu);
   if (has_las_code(dlpdu, codes.idle, 0)) return std::nullopt;
@@ -354,19 +354,26 @@ FfLasModel::Found FfLasModel::go_on(const DrivenDlpdu& pt) {
                                                      text_of(*priority_))};
 }
 
+// Ascending from the last one, and anew from the first; who may have been removed may be passed over.
+bool FfLasModel::is_next_to_probe(std::uint8_t node) const {
+  const unsigned count = rules().last_node - rules().first_node + 1U;
+  const unsigned last = last_probe_.value_or(rules().last_node);
+  for (unsigned n = 1; n <= count; ++n) {
+    const unsigned next = rules().first_node + (last - rules().first_node + n) % count;
+    const bool may_be_passed = !is_polled(next) || next == configuration_.node || nodes_.at(next).is_live;
+    if (next == node) return true;
+    if (!may_be_passed) return false;
+  }
+  return false;
+}
+
 FfLasModel::Found FfLasModel::say_probe(const DrivenDlpdu& pn) {
   const std::uint8_t node = pn.octet(1);
   if (!is_polled(node)) return LinkObjection{"probes_unpolled", "a PN for an address that may be polled"};
   if (node == configuration_.node || is_surely_live(node))
     return LinkObjection{"probes_live_node", "a PN for a node that is not live"};
   if (is_open(node)) remove(node);
-  // Anew from the first that is not live.
-  bool is_lowest = true;
-  for (unsigned n = rules().first_node; n < node; ++n) {
-    const auto lower = static_cast<std::uint8_t>(n);
-    if (is_polled(n) && lower != configuration_.node && !nodes_.at(lower).is_live) is_lowest = false;
-  }
-  const bool is_next = !last_probe_ || node > *last_probe_ || is_lowest;
+  const bool is_next = is_next_to_probe(node);
   last_probe_ = node;
   // Of a circulation without a token the priority is nobody's to see.
   if (!last_token_) is_first_circulation_ = false;
@@ -382,7 +389,11 @@ FfLasModel::Found FfLasModel::say_probe(const DrivenDlpdu& pn) {
 
 // ---- time and data ----
 
-FfLasModel::Found FfLasModel::say_time(const DrivenDlpdu& td) {
+FfLasModel::Found FfLasModel::say_time(const DrivenDlpdu& td, bool is_answer) {
+  const Duration period = rules().time_distribution_period * 9 / 10;
+  if (!is_answer && distributed_ && td.begin + times(1) < *distributed_ + period)
+    return LinkObjection{"time_told_too_often", "a TD when 0.9 x V(TDP) have passed, or for who asks"};
+  if (!is_answer) distributed_ = td.begin;
   std::uint64_t ticks = 0;
   for (std::size_t n = 1; n <= 6; ++n) ticks = ticks << 8 | td.octet(n);
   const auto last = std::exchange(told_, Reported{ticks, td.end});

@@ -45,7 +45,8 @@ class FfLasModel {
 
   // False: the station must refuse it.
   bool submit(Priority priority, const Octets& data);
-  bool write(const Octets& data, kernel::Time now);  // the buffer that its schedule has
+  // A buffer of its own that its schedule has.
+  bool write(fieldbus_dll::FfAddress address, const Octets& data, kernel::Time now);
   void order_transfer(std::uint8_t node) { heir_ = node; }
 
   // ---- what others say, until `end`; instants never decrease ----
@@ -118,6 +119,7 @@ class FfLasModel {
   bool is_open(std::uint8_t node) const;
   bool is_polled(unsigned node) const;
   bool has_to_probe() const;
+  bool is_next_to_probe(std::uint8_t node) const;
   bool has_time_for_td() const;
 
   void leave();
@@ -145,7 +147,7 @@ class FfLasModel {
   Found check_told() const;
   std::vector<Priority> priorities_behind(kernel::Duration rotation) const;
   Found say_probe(const DrivenDlpdu& pn);
-  Found say_time(const DrivenDlpdu& td);
+  Found say_time(const DrivenDlpdu& td, bool is_answer);
   Found say_data(const DrivenDlpdu& dt1);
   Found say_activation(fieldbus_dll::FfAddress to);
   Found say_live_list(const Octets& list);
@@ -158,7 +160,7 @@ class FfLasModel {
   bool is_scheduler_ = true;
   bool is_probed_ = false;
   std::optional<std::uint8_t> heir_;  // it was ordered to hand the link to it
-  OwnBuffer own_;
+  std::map<fieldbus_dll::FfAddress, OwnBuffer> own_;
 
   kernel::Time silent_since_ = kernel::kStart;
   kernel::Time free_since_ = kernel::kStart;   // it may have begun what it says now
@@ -168,6 +170,7 @@ class FfLasModel {
   bool are_events_certain_ = true;
   bool is_asked_for_time_ = false;
   kernel::Time time_told_ = kernel::kStart;
+  std::optional<kernel::Time> distributed_;  // that time, since it is the scheduler
   std::optional<Reported> told_;
   std::size_t items_done_ = 0;
   kernel::Time link_time_begin_ = kernel::kStart;

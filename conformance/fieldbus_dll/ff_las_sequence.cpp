@@ -94,13 +94,13 @@ class FfLasSequenceRun {
       case LasWord::submit:
         return submit(static_cast<Priority>(number(0)), at(1));
       case LasWord::write:
-        return write(at(0));
+        return write(kOwnBuffersOfLas.at(at(0)), at(1));
       case LasWord::overstay:
         return with_token([&](const DrivenDlpdu& pt) { overstay(pt, number(0)); });
       case LasWord::usurp:
         return usurp(number(0) != 0, number(1));
       case LasWord::order:
-        return order(kNodesOfLas.at(at(0)), number(1) != 0);
+        return order(kNodesOfLas.at(at(0)), number(1));
       case LasWord::second:
         return second(command);
       case LasWord::told:
@@ -254,10 +254,10 @@ class FfLasSequenceRun {
     });
   }
 
-  void write(std::size_t size) {
+  void write(FfAddress buffer, std::size_t size) {
     const Octets data = bench_.numbered_data(size);
-    const bool is_taken = bench_.write(kOwnBufferOfLas, data);
-    const bool is_right = model_.write(data, bench_.now());
+    const bool is_taken = bench_.write(buffer, data);
+    const bool is_right = model_.write(buffer, data, bench_.now());
     judge_.expect(is_taken == is_right, is_right ? "data_refused" : "data_too_long_taken", [&] {
       return Mismatch{{fmt::format("a buffer of {} octets is {}", size, is_right ? "taken" : "refused")},
                       is_taken ? "taken" : "refused"};
@@ -422,16 +422,16 @@ class FfLasSequenceRun {
     is_whole ? model_.hear_scheduler(tl, bench_.now()) : model_.hear_noise(bench_.now());
   }
 
-  void order(std::uint8_t heir, bool sends) {
+  void order(std::uint8_t heir, std::int64_t sends) {
     if (!model_.is_scheduler()) answer(next_said());
     judge_.expect(bench_.order_transfer(heir), "order_refused", "a link master takes the order",
                   "it is refused");
     model_.order_transfer(heir);
     const auto tl = next_that([&](const DrivenDlpdu& one) { return is_of(one, bench_.rules().codes.tl); });
     if (!tl) judge_.fail("not_transferred", {{fmt::format("a TL for {:02X}", heir)}, "none", bench_.now()});
-    if (!sends) return;
+    if (sends == 0) return;
     bench_.wait(bench_.least_gap());
-    say_as_scheduler({bench_.rules().codes.pn, kSecondOfLas});
+    say_as_scheduler({bench_.rules().codes.pn, sends == 1 ? kSecondOfLas : bench_.node()});
   }
 
   static constexpr std::uint8_t kSecondOfLas = 0x13;

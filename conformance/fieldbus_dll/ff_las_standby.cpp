@@ -18,6 +18,10 @@ using kernel::Time;
 
 constexpr std::size_t kLiveListOctets = 34;
 
+fieldbus_dll::FfAddress own_address_in(const DrivenDlpdu& dt3) {
+  return static_cast<fieldbus_dll::FfAddress>(dt3.octet(1) << 8 | dt3.octet(2));
+}
+
 }  // namespace
 
 kernel::Duration FfLasModel::claim_silence() const {
@@ -53,6 +57,7 @@ void FfLasModel::take(Time now) {
   is_probed_ = false;
   question_.reset();
   time_told_ = now;
+  distributed_.reset();
   for (unsigned n = 0; n < kNodes; ++n) {
     const auto node = static_cast<std::uint8_t>(n);
     nodes_.at(node).fewest_misses = 0;
@@ -130,10 +135,11 @@ FfLasModel::Found FfLasModel::say_transfer(const DrivenDlpdu& tl) {
 
 // ---- its own buffer ----
 
-bool FfLasModel::write(const Octets& data, Time now) {
+bool FfLasModel::write(fieldbus_dll::FfAddress address, const Octets& data, Time now) {
   constexpr std::size_t kUrgentMost = 2;
   if (data.size() > rules().link.most_data.at(kUrgentMost)) return false;
-  own_ = {data, own_.writes + 1, std::min(own_.since, now)};
+  OwnBuffer& own = own_[address];
+  own = {data, own.writes + 1, std::min(own.since, now)};
   return true;
 }
 
@@ -150,22 +156,28 @@ bool FfLasModel::is_own_item_next() const {
 // What was not written when it was due is not published.
 FfLasModel::Found FfLasModel::pass_own_items(const DrivenDlpdu& dlpdu) {
   while (is_own_item_next() && due() <= dlpdu.begin) {
-    if (own_.since <= due()) return LinkObjection{"own_buffer_not_published", "a DT3 of its own buffer"};
+    if (own_[next_item()->address].since <= due())
+      return LinkObjection{"own_buffer_not_published", "a DT3 of its own buffer"};
     ++items_done_;
   }
   return std::nullopt;
 }
 
 FfLasModel::Found FfLasModel::say_own_buffer(const DrivenDlpdu& dt3) {
-  if (!is_own_item_next() || own_.since == kernel::kNever)
+  // Those in front of it that were not written are passed over.
+  while (is_own_item_next() && own_[next_item()->address].since > due() && due() <= dt3.begin &&
+         next_item()->address != own_address_in(dt3))
+    ++items_done_;
+  if (!is_own_item_next() || own_[next_item()->address].since == kernel::kNever)
     return LinkObjection{"unexpected_dlpdu", "no DT3: none of its own buffers is due"};
   const fieldbus_dll::FfScheduleItem& item = *next_item();
+  const OwnBuffer& own = own_[item.address];
   const FfDlpdu right{.type = FfType::dt3,
                       .priority = item.priority,
                       .has_long_addresses = fieldbus_dll::is_long(item.address),
                       .source = item.address,
-                      .writes = static_cast<std::uint8_t>(own_.writes),
-                      .data = own_.data};
+                      .writes = static_cast<std::uint8_t>(own.writes),
+                      .data = own.data};
   const Time latest = std::max(due(), free_latest_) + times(rules().scheduling_overhead_octets);
   if (dt3.begin + kLinkRounding < due())
     return LinkObjection{"compelled_early", fmt::format("not before {}", kernel::describe(due()))};

@@ -23,7 +23,10 @@ constexpr unsigned kMostLater = 20;
 constexpr std::array<std::int64_t, 3> kLasDelays{0, 0, 16};
 
 constexpr std::array<std::int64_t, 9> kLasParts{0, 0, 4, 16, 20, 28, 31, kPartsOfClaim, kPartsOfClaim};
-constexpr std::array<std::int64_t, 8> kLasJumps{0, 1, 2, 330, 1'234, 3'300, 6'399, 40'000};
+// The last ones make link time longer than 32 bits, at once and a little later.
+constexpr std::int64_t kMostJump = 0x2'0000'0000;
+constexpr std::array<std::int64_t, 10> kLasJumps{0,     1,     2,      330,       1'234,
+                                                 3'300, 6'399, 40'000, kMostJump, 0xFFFF'F000};
 constexpr std::array<std::int64_t, 3> kLasVersions{0, 0, 1};
 
 SequenceNumber las_item() {
@@ -71,14 +74,15 @@ void network_of_las(FfConfiguration& configuration) {
   // less than one with a token that is spent.
   configuration.rules.target_rotation = 330 * kOctetAt31250;
   configuration.rules.time_distribution_period = 2 * kernel::kSecond;
-  // The third is due while the second is answered, and its own buffer while the third is.
+  // The third is due with the second, and its own buffers while the third is answered.
   configuration.schedule = {.version = 1,
                             .macrocycle = kMacrocycleOfLas,
-                            .items = {{330, kItemsOfLas[0], Priority::normal},
+                            .items = {{0, kItemsOfLas[0], Priority::normal},
                                       {3'200, kItemsOfLas[1], Priority::urgent},
-                                      {3'300, kItemsOfLas[2], Priority::time_available},
-                                      {3'400, kOwnBufferOfLas, Priority::normal}}};
-  configuration.published = {kOwnBufferOfLas};
+                                      {3'200, kItemsOfLas[2], Priority::time_available},
+                                      {3'400, kOwnBuffersOfLas[0], Priority::normal},
+                                      {3'400, kOwnBuffersOfLas[1], Priority::normal}}};
+  configuration.published = {kOwnBuffersOfLas[0], kOwnBuffersOfLas[1]};
 }
 
 // Who is live changes, data wait, the link is another's, is claimed, is handed on.
@@ -143,8 +147,8 @@ SequenceVocabulary ff_las_vocabulary() {
             .numbers = {{"priority", 1, 3, 3}, {"size", 2, 66, 8, kLasSizes}},
             .weight = 4},
            {.word = "write",
-            .meaning = "the user writes the buffer that the schedule has",
-            .numbers = {{"size", 0, 66, 8, kLasSizes}},
+            .meaning = "the user writes one of two buffers that the schedule has",
+            .numbers = {{"buffer", 0, 1, 0}, {"size", 0, 66, 8, kLasSizes}},
             .weight = 3},
            {.word = "overstay",
             .meaning = "the next token is held beyond its end, and data end so many octets behind "
@@ -157,14 +161,15 @@ SequenceVocabulary ff_las_vocabulary() {
             .numbers = {{"probe", 0, 1, 0}, las_delay()},
             .weight = 4},
            {.word = "order",
-            .meaning = "the user orders to hand the link to a node, which is silent (0) or sends (1)",
-            .numbers = {las_node(), {"sends", 0, 1, 1}},
+            .meaning = "the user orders to hand the link to a node, which is silent (0), probes another (1) "
+                       "or this one (2)",
+            .numbers = {las_node(), {"sends", 0, 2, 1}},
             .weight = 3},
            {.word = "second",
             .meaning = "another scheduler sends 0: CL, 1: PT for a node, 2: PN for it, 3: PN for "
                        "this one, 4: TD with a jump of link time, 5: CD, 6: IDLE; in standby after "
                        "so many 32nds of the silence that claims the link, 32: an octet less",
-            .numbers = {{"kind", 0, 6, 0}, las_node(), {"jump", 0, 40'000, 0, kLasJumps}, las_parts()},
+            .numbers = {{"kind", 0, 6, 0}, las_node(), {"jump", 0, kMostJump, 0, kLasJumps}, las_parts()},
             .weight = 5},
            {.word = "told",
             .meaning = "another scheduler tells which of the nodes are live, a bit each",

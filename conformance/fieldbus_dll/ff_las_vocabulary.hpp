@@ -12,7 +12,7 @@
 namespace fieldproof::conformance {
 
 inline constexpr std::array<fieldbus_dll::FfAddress, 3> kItemsOfLas{0x1120, 0x1220, 0xF520};
-inline constexpr fieldbus_dll::FfAddress kOwnBufferOfLas = 0x1020;
+inline constexpr std::array<fieldbus_dll::FfAddress, 2> kOwnBuffersOfLas{0x1020, 0x1021};
 // Live from the beginning are the first two; the others are polled.
 inline constexpr std::array<std::uint8_t, 5> kNodesOfLas{0x11, 0x12, 0x13, 0x14, 0xF5};
 inline constexpr std::uint32_t kMacrocycleOfLas = 6'400;  // 200 ms
