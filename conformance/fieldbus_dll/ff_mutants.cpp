@@ -1,11 +1,5 @@
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <deque>
-#include <string>
-
 #include "conformance/fieldbus_dll/ff_device_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_ending_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_seeded_faults.hpp"
@@ -468,27 +462,8 @@ const FfMutants& ff_device_mutants() {
 
 namespace {
 
-bool is_caught_in_standby(const std::string& mutant) {
-  return std::ranges::any_of(ff_standby_sequence_role().derived_catches,
-                             [&](const DerivedCatch& one) { return one.caught.mutant == mutant; }) ||
-         std::ranges::any_of(ff_cases(), [&](const FfCase& one) {
-           return one.needs.is_in_standby &&
-                  std::ranges::any_of(one.test_case.catches,
-                                      [&](const MustCatch& caught) { return caught.mutant == mutant; });
-         });
-}
-
-// The mutants of a device as a link master that is in standby, and never anything else.
 std::vector<FfRow> ff_standby_rows() {
-  static std::deque<std::string> texts;
-  std::vector<FfRow> rows;
-  for (const FfRow& row : ff_device_mutants().rows()) {
-    const std::string& name = texts.emplace_back(fmt::format("{}{}", kStandbyMutant, row.name));
-    if (!is_caught_in_standby(name)) continue;
-    const std::string& text = texts.emplace_back(fmt::format("in standby: {}", row.description));
-    rows.push_back({name, row.label, text, row.make});
-  }
-  return rows;
+  return mutants_in_standby(ff_device_mutants(), ff_cases(), ff_standby_sequence_role());
 }
 
 }  // namespace

@@ -14,9 +14,9 @@ using fieldbus_dll::IsaConfiguration;
 IsaConfiguration configuration_of(const IsaNeeds& needs, const IsaSetting& setting) {
   IsaConfiguration configuration;
   configuration.rules.link.bit_rate = needs.bit_rate;
-  configuration.address = setting.address;
+  configuration.address = needs.is_in_standby ? kIsaStationAddress : setting.address;
   configuration.schedule = needs.schedule;
-  configuration.begins_as_scheduler = needs.is_scheduler;
+  configuration.begins_as_scheduler = needs.is_scheduler && !needs.is_in_standby;
   if (needs.change) needs.change(configuration);
   field::take_settings(fieldbus_dll::kIsaTable, setting.settings, configuration);
   return configuration;
@@ -47,6 +47,7 @@ IsaBench::IsaBench(const IsaNeeds& needs, const IsaSetting& setting)
     : LinkBench(configuration_of(needs, setting).rules.link, setting.seed, setting.volume,
                 setting.link_stresses),
       configuration_(configuration_of(needs, setting)),
+      is_in_standby_(needs.is_in_standby),
       station_(setting.make_device(configuration_)) {
   start_recording(setting, rules());
   station_->wire(attach_station(*station_, setting.plan), user_);

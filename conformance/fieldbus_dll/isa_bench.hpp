@@ -17,6 +17,8 @@
 // that, and on what was delivered to the user.
 namespace fieldproof::conformance {
 
+inline constexpr std::uint8_t kIsaStationAddress = 0x21;  // a basic station
+
 // What a case needs around the IUT.
 struct IsaNeeds {
   fieldbus_dll::IsaSchedule schedule{};  // of an IUT that is the scheduler
@@ -24,11 +26,12 @@ struct IsaNeeds {
   std::int64_t bit_rate = 31'250;
   // Of the configuration of the IUT besides; empty: as it is.
   std::function<void(fieldbus_dll::IsaConfiguration&)> change{};
+  bool is_in_standby = false;  // a link master that is what a basic station is
 };
 
 // Who plays, and how.
 struct IsaSetting : PlannedSetting<fieldbus_dll::IsaDevice, fieldbus_dll::IsaConfiguration> {
-  std::uint8_t address = 0x21;                  // of the IUT
+  std::uint8_t address = kIsaStationAddress;    // of the IUT
   const LinkStresses* link_stresses = nullptr;  // must outlive the bench
 };
 
@@ -100,6 +103,7 @@ class IsaBench final : public LinkBench {
   bool order_transfer(std::uint8_t node);
   bool ask_user_request(const Octets& request);
   // It has taken its settings.
+  bool is_in_standby() const { return is_in_standby_; }
   bool has_started() const { return has_started_; }
   void set_supply(bool is_on);
   std::string words(const DrivenDlpdu& dlpdu) const override;
@@ -121,6 +125,7 @@ class IsaBench final : public LinkBench {
 
  private:
   fieldbus_dll::IsaConfiguration configuration_;
+  bool is_in_standby_;
   IsaUpperTester user_;
   std::unique_ptr<fieldbus_dll::IsaDevice> station_;
   bool has_started_ = false;

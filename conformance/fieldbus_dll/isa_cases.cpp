@@ -3,6 +3,7 @@
 #include <array>
 
 #include "conformance/fieldbus_dll/isa_expect.hpp"
+#include "conformance/fieldbus_dll/isa_standby.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -52,6 +53,8 @@ const std::vector<IsaCase>& isa_cases() {
         isa_schedule_cases,     isa_supervision_cases, isa_transfer_cases,      isa_immunity_cases,
         isa_timers_cases,       isa_request_cases,     isa_link_settings_cases, isa_reception_cases};
     auto all = cases_of<IsaCase>(kChapters, isa_details());
+    const std::vector<IsaCase> in_standby = isa_standby_cases(all);
+    all.insert(all.end(), in_standby.begin(), in_standby.end());
     all.push_back(canary("isa_dle"));
     all.push_back(canary("isa_las"));
     return all;

@@ -8,6 +8,7 @@
 #include "conformance/fieldbus_dll/isa_las_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_reply_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/isa_request_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/isa_standby.hpp"
 #include "conformance/fieldbus_dll/isa_token_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/link_seeded_faults.hpp"
 
@@ -348,8 +349,16 @@ const IsaMutants& isa_dle_mutants() {
   return table;
 }
 
+namespace {
+
+std::vector<IsaMutants::Row> isa_standby_rows() {
+  return mutants_in_standby(isa_dle_mutants(), isa_cases(), isa_standby_sequence_role());
+}
+
+}  // namespace
+
 const IsaMutants& isa_las_mutants() {
-  static const IsaMutants table("isa_las", {isa_las_rows, isa_las_check_rows});
+  static const IsaMutants table("isa_las", {isa_las_rows, isa_las_check_rows, isa_standby_rows});
   return table;
 }
 

@@ -81,6 +81,9 @@ class IsaSequenceRun {
 
   void send(const SequenceCommand& command) {
     const Octets octets = octets_of(static_cast<IsaWord>(command.word), command.numbers);
+    // It would not be in standby any more.
+    const bool is_tl = !octets.empty() && octets[0] == bench_.rules().codes.tl;
+    if (bench_.is_in_standby() && is_tl && octets.size() > 1 && octets[1] == bench_.address()) return;
     const kernel::Time begin = bench_.now();
     if (send_link_command(bench_, octets, command)) {
       model_.hear(octets, begin, bench_.now());

@@ -10,6 +10,7 @@
 #include "conformance/fieldbus_dll/isa_las_sequence.hpp"
 #include "conformance/fieldbus_dll/isa_mutants.hpp"
 #include "conformance/fieldbus_dll/isa_sequence_check.hpp"
+#include "conformance/fieldbus_dll/isa_standby.hpp"
 #include "protocols/fieldbus_dll/attached_ff_device.hpp"
 #include "protocols/fieldbus_dll/attached_isa_device.hpp"
 #include "protocols/fieldbus_dll/embedded_schemas.hpp"
@@ -36,7 +37,7 @@ RoleRow isa_dle_row() {
       {.what = kIsaStation, .mutants = isa_dle_mutants},
       IsaCases{.name = "isa_dle",
                .cases = isa_cases,
-               .adjust = [](IsaSetting& setting, RunningCase&) { setting.address = 0x21; },
+               .adjust = [](IsaSetting& setting, RunningCase&) { setting.address = kIsaStationAddress; },
                .settings = &kIsaTable,
                .sequences = SequenceRow<IsaCase>{isa_dle_sequence_role, run_isa_dle_sequence}});
 }
@@ -49,7 +50,9 @@ RoleRow isa_las_row() {
                .adjust = [](IsaSetting& setting, RunningCase&) { setting.address = 0x10; },
                .settings = &kIsaTable,
                .sequences = SequenceRow<IsaCase>{isa_las_sequence_role, run_isa_las_sequence,
-                                                 isa_las_sequence_needs()}});
+                                                 isa_las_sequence_needs()},
+               .more_sequences = SequenceRow<IsaCase>{isa_standby_sequence_role, run_isa_dle_sequence,
+                                                      isa_standby_sequence_needs()}});
 }
 
 RoleRow ff_device_row() {
