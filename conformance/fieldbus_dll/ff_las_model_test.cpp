@@ -27,6 +27,8 @@ class FfLasModelTest : public testing::Test {
     made.schedule = {.version = 1, .macrocycle = 32'000, .items = {{kDue, 0x1120, Priority::normal}}};
     made.rules.target_rotation = fieldbus_dll::octets({}, 200);
     made.rules.token_holding_octets = 100;
+    made.rules.first_unpolled = 0x16;
+    made.rules.unpolled = 0xE2;
     return made;
   }
 

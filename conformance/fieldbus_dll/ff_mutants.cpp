@@ -421,6 +421,15 @@ std::vector<FfRow> ff_claim_rows() {
   };
 }
 
+// Of derived sequences.
+std::vector<FfRow> ff_las_told_rows() {
+  using namespace ff_seeded_faults;
+  return {{"reply_missing_of_itself", "", "reports its own node where a publisher did not reply",
+           mutant<EventsOfItself>()},
+          {"each_event_once", "", "reports each kind of event once", mutant<EachEventOnce>()},
+          {"data_return_no_token", "", "takes F in a DT1 for nothing", mutant<DataReturnNoToken>()}};
+}
+
 std::vector<FfRow> ff_las_sequence_rows() {
   using namespace ff_seeded_faults;
   return FfMutants::for_check({
@@ -444,10 +453,6 @@ std::vector<FfRow> ff_las_sequence_rows() {
        mutant<AllAdmittedBehindTwoSlow>()},
       {"second_time_request_ignored", "", "sends the time to who asks once",
        mutant<SecondTimeRequestIgnored>()},
-      {"reply_missing_of_itself", "", "reports its own node where a publisher did not reply",
-       mutant<EventsOfItself>()},
-      {"each_event_once", "", "reports each kind of event once", mutant<EachEventOnce>()},
-      {"data_return_no_token", "", "takes F in a DT1 for nothing", mutant<DataReturnNoToken>()},
       {"own_data_newest_first", "", "sends what its user submitted last", mutant<NewestFirst<FfLas>>()},
   });
 }
@@ -469,8 +474,9 @@ std::vector<FfRow> ff_standby_rows() {
 }  // namespace
 
 const FfMutants& ff_las_mutants() {
-  static const FfMutants table("ff_las", {ff_schedule_rows, ff_circulation_rows, ff_live_list_rows,
-                                          ff_claim_rows, ff_las_sequence_rows, ff_standby_rows});
+  static const FfMutants table(
+      "ff_las", {ff_schedule_rows, ff_circulation_rows, ff_live_list_rows, ff_claim_rows, ff_las_told_rows,
+                 ff_las_sequence_rows, ff_standby_rows});
   return table;
 }
 
