@@ -98,7 +98,7 @@ class FfLasSequenceRun {
       case LasWord::overstay:
         return with_token([&](const DrivenDlpdu& pt) { overstay(pt, number(0)); });
       case LasWord::usurp:
-        return usurp(number(0) != 0, number(1));
+        return number(0) == 2 ? interrupt(number(1)) : usurp(number(0) != 0, number(1));
       case LasWord::order:
         return order(kNodesOfLas.at(at(0)), number(1));
       case LasWord::second:
@@ -208,14 +208,23 @@ class FfLasSequenceRun {
     const Octets data = bench_.numbered_data(static_cast<std::size_t>(command.numbers[0]));
     const bool is_final = command.numbers[1] == 1;
     const bool is_left_open = command.numbers[1] == 2;
-    const bool is_whole = say_as(command, dt1_of(pt, data, is_final));
+    const Octets dt1 = dt1_of(pt, data, is_final);
+    if (!is_in_token(pt, dt1.size(), command.numbers.back())) return return_token(pt);
+    const bool is_whole = say_as(command, dt1);
     if (is_whole) data_.push_back(data);
     if (is_whole && is_final) return model_.hear_answer(bench_.now());
     if (is_whole) model_.hear_data(bench_.now());
-    if (!is_final && !is_left_open) return_token();
+    if (!is_final && !is_left_open) return_token(pt);
   }
 
-  void return_token() { model_.hear_answer(say({bench_.rules().codes.rt})); }
+  // What a holder says V(MID) from now, or later still, has to end within its token.
+  bool is_in_token(const DrivenDlpdu& pt, std::size_t octets, std::int64_t later = 0) const {
+    const kernel::Time over = pt.end + bench_.octets(duration_in(pt));
+    return bench_.now() + bench_.least_gap() + bench_.octets(later) + bench_.frame(octets) <= over;
+  }
+  void return_token(const DrivenDlpdu& pt) {
+    if (is_in_token(pt, 1)) model_.hear_answer(say({bench_.rules().codes.rt}));
+  }
 
   // Urgent data as long as another DT1 fits.
   void spend(const DrivenDlpdu& pt) {
@@ -235,13 +244,10 @@ class FfLasSequenceRun {
   }
 
   void ask_time(const DrivenDlpdu& pt, const SequenceCommand& command) {
-    if (!say_as(command, {bench_.rules().codes.ct, pt.octet(1)})) return return_token();
+    if (!say_as(command, {bench_.rules().codes.ct, pt.octet(1)})) return return_token(pt);
     model_.hear_time_request(bench_.now());
     const DrivenDlpdu said = next_said();
-    if (!is_of(said, bench_.rules().codes.td)) return answer(said);
-    // What it would return with has to end within its token.
-    const kernel::Time over = pt.end + bench_.octets(duration_in(pt));
-    if (bench_.now() + bench_.least_gap() + bench_.frame(1) <= over) return_token();
+    is_of(said, bench_.rules().codes.td) ? return_token(pt) : answer(said);
   }
 
   void submit(Priority priority, std::size_t size) {
@@ -273,7 +279,7 @@ class FfLasSequenceRun {
     const std::size_t most = bench_.link().most_data.at(0);
     const Octets none = data_of(pt, {});
     const kernel::Duration around = bench_.least_gap() + bench_.frame(none.size());
-    if (pt.end + bench_.least_gap() + bench_.slot() >= over) return return_token();
+    if (pt.end + bench_.least_gap() + bench_.slot() >= over) return return_token(pt);
     bool is_over = false;
     while (!is_over) {
       const std::int64_t left = (last - bench_.now() - around) / bench_.octets(1);
@@ -311,6 +317,16 @@ class FfLasSequenceRun {
                             : bench_.dt1(Priority::urgent, FfBench::kPeersAddress,
                                          fieldbus_dll::address_of(another, 1), bench_.numbered_data(4), true);
     model_.hear_noise(say(said, later));
+  }
+
+  // Data of others are no scheduler's. Whether they are what came in place of the reply is left open.
+  void interrupt(std::int64_t later) {
+    const auto asked = next_that([&](const DrivenDlpdu& one) { return is_cd(bench_, one); });
+    if (!asked) return;
+    const auto another = static_cast<std::uint8_t>(asked->octet(1) + 1);
+    model_.hear_noise(say(bench_.dt1(Priority::urgent, FfBench::kPeersAddress,
+                                     fieldbus_dll::address_of(another, 1), bench_.numbered_data(4)),
+                          later));
   }
 
   // ---- other schedulers ----

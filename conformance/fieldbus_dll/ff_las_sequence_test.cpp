@@ -17,7 +17,7 @@ TEST(FfLasSequence, TheReferenceFollowsTheModel) {
 }
 
 TEST(FfLasSequence, FindsEachSchedulerForCheckWithFewCommands) {
-  ff_las_checks().expect_finds_each(11, 4'000, 5);
+  ff_las_checks().expect_finds_each(11, 4'000, 6);
 }
 
 // Else it would be no fault of sequences.

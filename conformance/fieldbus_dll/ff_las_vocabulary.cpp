@@ -23,10 +23,10 @@ constexpr unsigned kMostLater = 20;
 constexpr std::array<std::int64_t, 3> kLasDelays{0, 0, 16};
 
 constexpr std::array<std::int64_t, 9> kLasParts{0, 0, 4, 16, 20, 28, 31, kPartsOfClaim, kPartsOfClaim};
-// The last ones make link time longer than 32 bits, at once and a little later.
+// The last ones make link time longer than 32 bits, at once and a part of a second later.
 constexpr std::int64_t kMostJump = 0x2'0000'0000;
-constexpr std::array<std::int64_t, 10> kLasJumps{0,     1,     2,      330,       1'234,
-                                                 3'300, 6'399, 40'000, kMostJump, 0xFFFF'F000};
+constexpr std::array<std::int64_t, 12> kLasJumps{
+    0, 1, 2, 330, 1'234, 3'300, 6'399, 40'000, kMostJump, 0xFFFF'C000, 0xFFFF'8000, 0xFFFF'0000};
 constexpr std::array<std::int64_t, 3> kLasVersions{0, 0, 1};
 
 SequenceNumber las_item() {
@@ -91,6 +91,14 @@ std::vector<std::vector<NamedCommand>> states_of_a_master() {
   const NamedCommand told_time{"second", {{"kind", 4}, {"jump", 1'234}, {"silence", 4}}};
   return {{{"silent", {{"tokens", 2}}}, {"obey", {{"count", 5}}}},
           {{"join"}, {"obey", {{"count", 5}}}},
+          // Found, and removed again.
+          {{"join", {{"node", 2}}},
+           {"obey", {{"count", 20}}},
+           {"silent", {{"node", 2}, {"tokens", 2}}},
+           {"silent", {{"node", 2}}},
+           {"obey", {{"count", 20}}},
+           {"join", {{"node", 2}}},
+           {"obey", {{"count", 20}}}},
           {{"submit"}, {"submit", {{"priority", 1}}}, {"write"}},
           {{"spend"}, {"spend"}},
           {displaced},
@@ -157,8 +165,8 @@ SequenceVocabulary ff_las_vocabulary() {
             .weight = 3},
            {.word = "usurp",
             .meaning = "another node than who is asked 0: returns the next token, 1: answers the "
-                       "next probe",
-            .numbers = {{"probe", 0, 1, 0}, las_delay()},
+                       "next probe, 2: sends data in place of the next reply to a CD",
+            .numbers = {{"probe", 0, 2, 0}, las_delay()},
             .weight = 4},
            {.word = "order",
             .meaning = "the user orders to hand the link to a node, which is silent (0), probes another (1) "

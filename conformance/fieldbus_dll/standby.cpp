@@ -11,6 +11,17 @@
 
 namespace fieldproof::conformance {
 
+namespace {
+
+constexpr std::array<std::string_view, 6> kSettingsInStandby{"most_data_1",
+                                                             "most_data_2",
+                                                             "most_data_3",
+                                                             "preamble_octets",
+                                                             "returns_with_last_data",
+                                                             "supports_long_addresses"};
+
+}  // namespace
+
 void put_in_standby(MustCatch& caught) {
   caught.mutant = std::string(kStandbyMutant) + caught.mutant;
 }
@@ -26,10 +37,11 @@ void put_in_standby(TestCase& test_case, const Standby& standby) {
 SequenceRole sequences_in_standby(SequenceRole of_station, const Standby& standby,
                                   void (*words)(SequenceVocabulary&)) {
   put_in_standby(of_station.test_case, standby);
-  of_station.vocabulary = without_settings(std::move(of_station.vocabulary));
+  // The others move the instant at which it would claim the link.
+  std::erase_if(of_station.vocabulary.settings, [](const SequenceSetting& one) {
+    return std::ranges::find(kSettingsInStandby, one.name) == kSettingsInStandby.end();
+  });
   words(of_station.vocabulary);
-  std::erase_if(of_station.derived_catches,
-                [](const DerivedCatch& one) { return one.kind == DerivedKind::settings; });
   for (DerivedCatch& one : of_station.derived_catches) put_in_standby(one.caught);
   return of_station;
 }

@@ -25,7 +25,7 @@ inline constexpr std::string_view kStandbyMutant = "standby_";
 
 void put_in_standby(TestCase& test_case, const Standby& standby);
 void put_in_standby(MustCatch& caught);
-// `words` makes the vocabulary one of a link master; settings are as the bench has them.
+// `words` makes the vocabulary one of a link master.
 SequenceRole sequences_in_standby(SequenceRole of_station, const Standby& standby,
                                   void (*words)(SequenceVocabulary&));
 
