@@ -100,7 +100,9 @@ class FfStation : public FfDevice {
 
   // ---- actions ----
   kernel::Time transmit(const FfDlpdu& dlpdu, kernel::Time now);
-  virtual void tell(FfEventKind kind, std::uint8_t node, kernel::Time now) { user_->on_event({kind, node}, now); }
+  virtual void tell(FfEventKind kind, std::uint8_t node, kernel::Time now) {
+    user_->on_event({kind, node}, now);
+  }
   void enter(FfState state) { state_ = state; }
   void answer(const FfDlpdu& dlpdu, const Place& place);
   virtual void use_token(kernel::Time now);
