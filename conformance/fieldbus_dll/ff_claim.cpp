@@ -94,14 +94,36 @@ Octets list_of_two(FfScene& scene) {
                          fieldbus_dll::live_list_spdu(9, live));
 }
 
-void expect_tokens_of_two(FfScene& scene) {
+std::set<unsigned> nodes_with_tokens(const FfScene& scene) {
   std::set<unsigned> passed;
   for (const DrivenDlpdu& one : scene.driven)
     if (is_pt(scene.bench, one)) passed.insert(one.octet(1));
+  return passed;
+}
+
+void expect_tokens_of_two(FfScene& scene) {
+  const std::set<unsigned> passed = nodes_with_tokens(scene);
   scene.judge.expect(passed == std::set<unsigned>{0x12, 0x15}, "live_list_not_kept", [&] {
     return Mismatch{{"PTs for 12 and 15, as the live list has them"},
                     fmt::format("for {:02X}", fmt::join(passed, " "))};
   });
+}
+
+void expect_tokens_of_settings(FfScene& scene) {
+  const std::set<unsigned> passed = nodes_with_tokens(scene);
+  scene.judge.expect(passed == std::set<unsigned>{0x11}, "live_list_outlasts_supply", [&] {
+    return Mismatch{{"PTs for 11, as its settings have it"},
+                    fmt::format("for {:02X}", fmt::join(passed, " "))};
+  });
+}
+
+void lose_supply(FfScene& scene) {
+  scene.bench.set_supply(false);
+  scene.bench.wait(scene.bench.octets(20));
+  scene.bench.set_supply(true);
+  scene.sent = scene.bench.now();
+  while (scene.bench.next(scene.bench.now())) {
+  }
 }
 
 void expect_silence_before_claim(FfScene& scene) {
@@ -205,6 +227,24 @@ std::vector<FfCase> ff_claim_cases() {
            {wait(30), send("a live list with 12 and 15", list_of_two), claimed, serve({1'200, 1'200}),
             expected<FfScene>("PTs for 12 and 15, and for no others", expect_tokens_of_two)}},
           {.change = standby}),
+      on_chart(must_case("fieldbus_dll/ff_las/claim/what_was_told_is_gone_with_the_supply", "FF-24",
+                         "Without supply a link master forgets who is live.", own("what outlasts the supply"),
+                         {{"live_list_outlasts_supply", "live_list_outlasts_supply"}}),
+               {{2, 10},
+                {wait(30), send("a live list with 12 and 15", list_of_two),
+                 stimulus<FfScene>("its supply goes and comes", lose_supply), claimed, serve({800, 800}),
+                 expected<FfScene>("PTs for 11, and for no others", expect_tokens_of_settings)}},
+               {.change = standby}),
+      on_chart(
+          must_case("fieldbus_dll/ff_las/claim/each_supply_begins_with_the_scheduler", "FF-29",
+                    "Who begins as the scheduler is it whenever its supply comes.",
+                    own("what outlasts the supply"), {{"begins_once", "not_begun_anew"}}),
+          {{2, 10},
+           {serve({300, 300}), stimulus<FfScene>("its supply goes and comes", lose_supply), serve({60, 60}),
+            has_driven(
+                "a DLPDU before it could have claimed the link",
+                [](const FfBench&, const DrivenDlpdu&) { return true; }, "not_begun_anew")}},
+          {.change = scheduler}),
       on_chart(must_case("fieldbus_dll/ff_las/claim/the_lower_master_is_left_the_link", "FF-30",
                          "Of two link masters the one with the smaller V(ST) x V(TN) has the link.",
                          vendors("V(ST) x V(TN)"),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "conformance/fieldbus_dll/ff_seeded_faults.hpp"
@@ -389,6 +390,21 @@ class StaysBehindClaim : public FfLas {
   bool leaves_to(const FfDlpdu& dlpdu) const override {
     return dlpdu.type != FfType::cl && FfLas::leaves_to(dlpdu);
   }
+};
+
+// ---- supply ----
+
+class LiveListOutlastsSupply : public FfLas {
+  using FfLas::FfLas;
+  void stop(Time now) override { FfStation::stop(now); }
+};
+
+class BeginsOnce : public FfLas {
+  using FfLas::FfLas;
+  bool start(Time now) override {
+    return std::exchange(has_begun_, true) ? FfStation::start(now) : FfLas::start(now);
+  }
+  bool has_begun_ = false;
 };
 
 }  // namespace fieldproof::conformance::ff_seeded_faults
