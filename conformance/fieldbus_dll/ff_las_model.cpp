@@ -377,12 +377,15 @@ FfLasModel::Found FfLasModel::say_probe(const DrivenDlpdu& pn) {
   last_probe_ = node;
   // Of a circulation without a token the priority is nobody's to see.
   if (!last_token_) is_first_circulation_ = false;
+  bool is_one_too_many = false;
   if (++probes_ > 1) {
+    is_one_too_many = pass_over(0, kNodes).has_value();
     // A circulation without a token begins at an instant that nobody sees.
     last_token_.reset();
     circulation_begin_.reset();
   }
   question_ = Question{.node = node, .asked = Asked::probes};
+  if (is_one_too_many) return LinkObjection{"second_probe", "tokens between two PNs: nodes are live"};
   if (is_next) return std::nullopt;
   return LinkObjection{"probes_out_of_order", "the next address, ascending"};
 }

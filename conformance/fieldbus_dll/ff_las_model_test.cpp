@@ -157,6 +157,13 @@ TEST_F(FfLasModelTest, AFaultyAnswerLeavesOpenWhoIsLive) {
   EXPECT_EQ(probes(0x11), "");
 }
 
+TEST_F(FfLasModelTest, OneProbeComesBetweenTwoCirculations) {
+  circulate(Priority::urgent);
+  EXPECT_EQ(probes(0x13), "");
+  unanswered();
+  EXPECT_EQ(probes(0x14), "second_probe");
+}
+
 TEST_F(FfLasModelTest, WhoAnswersAProbeIsActivatedAndPartOfTheNextCirculation) {
   circulate(Priority::urgent);
   EXPECT_EQ(probes(0x13), "");
