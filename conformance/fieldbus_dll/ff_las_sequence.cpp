@@ -466,10 +466,12 @@ std::vector<PartialSource> ff_las_sequence_details() {
   using link_sources::own;
   using link_sources::vendors;
   std::vector<PartialSource> details = ff_details();
-  details.push_back({own("what a scheduler says when"),
-                     {"does_not_wait", "order_wrong", "begin_not_marked", "token_for_removed",
-                      "token_shorter_than_the_time", "priority_wrong", "time_request_ignored",
-                      "data_not_sent", "sends_other_data"}});
+  details.push_back(
+      {own("what a scheduler says when"),
+       {"does_not_wait", "order_wrong", "begin_not_marked", "token_for_removed",
+        "token_shorter_than_the_time", "priority_wrong", "time_request_ignored", "data_not_sent",
+        "sends_other_data", "second_probe", "probes_out_of_order", "time_told_too_often"}});
+  details.push_back({own("what the user of a scheduler is told"), {"event_wrong"}});
   details.push_back({own("what has changed is sent within two circulations"),
                      {"not_activated", "live_list_not_told", "live_list_wrong"}});
   details.push_back(
