@@ -11,20 +11,37 @@
 namespace fieldproof::conformance {
 namespace {
 
+using fieldbus_dll::IsaDlpdu;
+using fieldbus_dll::IsaEventKind;
+using fieldbus_dll::IsaService;
 using fieldbus_dll::IsaType;
 using fieldbus_dll::Priority;
 using kernel::Time;
 
 constexpr std::array kPrioritiesOfIsaLas{Priority::urgent, Priority::normal, Priority::time_available};
-constexpr std::uint8_t kFinalOfDu = 0x04;
-constexpr std::size_t kHeaderAndCheck = 5;
+constexpr std::uint8_t kFinalOfData = 0x04;
+constexpr std::size_t kHeaderOfData = 3;
+constexpr std::size_t kOctetsOfEnd = 4;
+
+std::string hex(const Octets& octets) {
+  return fmt::format("{:02X}", fmt::join(octets, " "));
+}
+
+Octets header_of(std::uint8_t code, Priority priority, std::uint8_t destination, std::uint8_t source) {
+  return {static_cast<std::uint8_t>(code | static_cast<unsigned>(priority)), destination, source};
+}
 
 }  // namespace
 
-bool IsaLasAcceptor::submit(Priority priority, std::uint8_t destination, const Octets& data, Time now) {
+// ---- the user ----
+
+bool IsaLasAcceptor::submit(IsaService service, Priority priority, std::uint8_t destination,
+                            const Octets& data, Time now) {
   const auto number = static_cast<std::size_t>(priority);
   if (data.size() > rules().link.most_data.at(number - 1)) return false;
-  queues_.at(number).push_back({priority, destination, data});
+  (service == IsaService::reply_data ? replies_ : to_send_)
+      .at(number)
+      .push_back({service == IsaService::compel, priority, destination, data});
   submitted_ = now;
   return true;
 }
@@ -33,47 +50,88 @@ void IsaLasAcceptor::order_transfer(std::uint8_t heir) {
   if (!is_standby_) ordered_ = heir;
 }
 
+std::vector<IsaReport> IsaLasAcceptor::take_reports(const std::vector<IsaReport>& actual) {
+  std::vector<IsaReport> right;
+  for (const Due& due : std::exchange(reports_, {})) {
+    const bool is_other = due.other && right.size() < actual.size() && actual[right.size()] == *due.other;
+    right.push_back(is_other ? *due.other : due.report);
+  }
+  return right;
+}
+
 // ---- what others said ----
 
-void IsaLasAcceptor::hear_return(Time end) {
+void IsaLasAcceptor::hear(const Octets& octets, Time end) {
+  const auto dlpdu = fieldbus_dll::isa_dlpdu_of(octets, rules());
+  if (!dlpdu) return hear_noise(end);
+  const bool is_for_it = dlpdu->destination == configuration_.address;
+  if (dlpdu->type == IsaType::tl && is_for_it) return hear_transfer(dlpdu->source, end);
   silent_since_ = end;
-  out_.reset();
+  owed_.reset();
+  hear_as_scheduler(*dlpdu, end);
+  if (const auto awaited = std::exchange(awaited_, std::nullopt)) {
+    const bool is_reply = dlpdu->type == IsaType::dt && is_for_it && dlpdu->source == awaited->node;
+    if (!is_reply) return report(IsaEventKind::token_dropped, dlpdu->source);
+  } else if (dlpdu->type == IsaType::cd && is_for_it) {
+    owed_ = Reply{dlpdu->source, end + times(rules().reply_forming_octets), dlpdu->priority};
+  }
+  const bool is_data = dlpdu->type == IsaType::du || dlpdu->type == IsaType::dt;
+  const bool is_to_all = dlpdu->type == IsaType::du && dlpdu->destination == rules().everybody;
+  if (is_data && (is_for_it || is_to_all)) reports_.push_back({{*dlpdu}});
 }
 
-void IsaLasAcceptor::hear_data(Time end) {
-  silent_since_ = end;
-  if (out_) out_->may_from = out_->must_by = out_->over ? std::max(*out_->over, end) : end + reply_wait();
+void IsaLasAcceptor::hear_as_scheduler(const IsaDlpdu& dlpdu, Time end) {
+  if (is_standby_) return;
+  const bool is_from_out = out_ && out_->node == dlpdu.source;
+  if (is_from_out && out_->is_transfer) {
+    report(IsaEventKind::transferred, dlpdu.source);
+    out_.reset();
+    ordered_.reset();
+    is_standby_ = true;
+  } else if (is_of_scheduler(dlpdu.type)) {
+    report(IsaEventKind::second_scheduler, dlpdu.source);
+    hear_other(end);
+    if (dlpdu.source > configuration_.address) return;
+    report(IsaEventKind::scheduler_left, dlpdu.source);
+    out_.reset();
+    ordered_.reset();
+    is_standby_ = true;
+  } else if (is_from_out) {
+    hear_holder(dlpdu.type, end);
+  } else {
+    hear_other(end);
+  }
 }
 
-void IsaLasAcceptor::hear_cd(Time end) {
-  hear_data(end);
-  if (out_ && !out_->over) out_->may_from = out_->must_by = end + 2 * reply_wait();
+void IsaLasAcceptor::hear_holder(IsaType type, Time end) {
+  if (type == IsaType::ee) return out_.reset();
+  const bool is_second = std::exchange(out_->is_used, true);
+  if (out_->over) {
+    out_->may_from = out_->must_by = std::max(*out_->over, end);
+    return;
+  }
+  if (is_second) report(IsaEventKind::token_overrun, out_->node);
+  out_->may_from = out_->must_by = end + (type == IsaType::cd ? 2 : 1) * reply_wait();
 }
 
 void IsaLasAcceptor::hear_other(Time end) {
-  silent_since_ = end;
   if (!out_) return;
   out_->may_from = std::max(out_->may_from, end);
   out_->must_by = std::max({out_->must_by, end + reply_wait(), out_->over.value_or(end)});
+  out_->is_unsure = true;
 }
 
-void IsaLasAcceptor::hear_heir(Time end) {
+void IsaLasAcceptor::hear_noise(Time end) {
   silent_since_ = end;
-  out_.reset();
-  is_standby_ = true;
-}
-
-void IsaLasAcceptor::hear_scheduler(std::uint8_t address, Time end) {
   hear_other(end);
-  if (address > configuration_.address) return;
-  out_.reset();
-  ordered_.reset();
-  is_standby_ = true;
 }
 
-void IsaLasAcceptor::hear_transfer(Time end) {
+void IsaLasAcceptor::hear_transfer(std::uint8_t from, Time end) {
+  report(IsaEventKind::scheduler_taken, from);
   silent_since_ = begin_ = end;
   out_.reset();
+  awaited_.reset();
+  owed_.reset();
   next_ = 0;
   is_standby_ = has_shown_itself_ = false;
   may_show_itself_ = true;
@@ -83,67 +141,117 @@ void IsaLasAcceptor::hear_transfer(Time end) {
 
 Time IsaLasAcceptor::free_by() const {
   const Time silent = silent_since_ + times(rules().link.inter_pdu_delay_octets);
-  return out_ ? std::max(out_->must_by, silent) : silent;
+  return std::max({silent, out_ ? out_->must_by : silent, awaited_ ? awaited_->until : silent});
 }
 
-const IsaLasAcceptor::Request* IsaLasAcceptor::most_urgent() const {
+IsaLasAcceptor::Request* IsaLasAcceptor::most_urgent(Queues& queues, Priority least) {
   for (const Priority priority : kPrioritiesOfIsaLas) {
-    const auto& queue = queues_.at(static_cast<std::size_t>(priority));
-    if (!queue.empty()) return &queue.front();
+    auto& queue = queues.at(static_cast<std::size_t>(priority));
+    if (priority >= least && !queue.empty()) return &queue.front();
   }
   return nullptr;
 }
 
-// With all that a station may count besides: its delay, and a return as if it held a token.
-bool IsaLasAcceptor::surely_fits(const Request& request, Time from) const {
-  const std::int64_t around = 4 * std::int64_t{rules().link.inter_pdu_delay_octets};
-  const kernel::Duration frame = frame_time(rules().link, kHeaderAndCheck + request.data.size());
-  return from + slot() + frame + times(around) <= due();
+kernel::Duration IsaLasAcceptor::frame_of(std::size_t octets) const {
+  return fieldbus_dll::frame_time(rules().link, octets + 2);
+}
+
+// As under a token: its return, and a reply, belong to it.
+kernel::Duration IsaLasAcceptor::needed_for(const Request& request) const {
+  const kernel::Duration end = times(rules().link.inter_pdu_delay_octets) + frame_of(kOctetsOfEnd);
+  if (!request.compels) return frame_of(kHeaderOfData + request.data.size()) + end;
+  const std::size_t longest = rules().link.most_data.at(static_cast<std::size_t>(request.priority) - 1);
+  return frame_of(kHeaderOfData) + reply_wait() + frame_of(kHeaderOfData + longest) + end;
 }
 
 Time IsaLasAcceptor::silent_until() const {
+  if (owed_) return owed_->until + kLinkRounding;
   if (is_standby_) return kernel::kNever;
   Time wanted = due();
-  if (const Request* const request = most_urgent()) {
+  Queues queues = to_send_;
+  if (const Request* const request = most_urgent(queues, Priority::time_available)) {
     const Time from = std::max(free_by(), submitted_);
-    if (surely_fits(*request, from)) wanted = std::min(wanted, from);
+    if (from + slot() + needed_for(*request) <= due()) wanted = std::min(wanted, from);
   }
   if (ordered_) wanted = silent_since_;
   if (!has_shown_itself_) wanted = std::min(wanted, silent_since_ + reply_wait() - slot());
   return std::max(wanted, free_by()) + slot() + kLinkRounding;
 }
 
+LinkObjection IsaLasAcceptor::silence() const {
+  if (owed_) return {"no_reply", "a DT within V(FD) after a CD for it"};
+  return {"line_left_silent", "the next item, data that fits, or a TL"};
+}
+
 // ---- what it says ----
 
 IsaLasAcceptor::Found IsaLasAcceptor::say(const DrivenDlpdu& dlpdu) {
   const Time begin = dlpdu.begin + kLinkRounding;
+  const bool is_early = begin < silent_since_ + times(rules().link.inter_pdu_delay_octets);
+  const LinkObjection early{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
+  if (owed_ && is_early) return early;
+  if (owed_) return say_reply(dlpdu);
   if (is_standby_) return LinkObjection{"speaks_unasked", "silence: another is the scheduler"};
   if (out_ && begin < out_->may_from) {
-    return LinkObjection{out_->heir ? "talks_into_transfer" : "talks_into_token",
-                         out_->heir ? "silence: the heir may show itself" : "silence: a token is out"};
+    return LinkObjection{out_->is_transfer ? "talks_into_transfer" : "talks_into_token",
+                         out_->is_transfer ? "silence: the heir may show itself" : "silence: a token is out"};
   }
-  if (begin < silent_since_ + times(rules().link.inter_pdu_delay_octets))
-    return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
-  out_.reset();
+  if (awaited_ && begin < awaited_->until)
+    return LinkObjection{"talks_into_reply", "silence: its CD may be answered"};
+  if (is_early) return early;
+  end_wait();
   Found objection = say_dlpdu(dlpdu);
   silent_since_ = dlpdu.end;
   has_shown_itself_ = true;
   return objection;
 }
 
+// For what it has awaited in vain.
+void IsaLasAcceptor::end_wait() {
+  if (const auto awaited = std::exchange(awaited_, std::nullopt))
+    report(IsaEventKind::reply_missing, awaited->node);
+  const auto out = std::exchange(out_, std::nullopt);
+  if (!out) return;
+  if (out->is_transfer) return report(IsaEventKind::transfer_failed, out->node);
+  const bool is_overrun = out->over && out->is_used;
+  const IsaReport overrun{{}, {IsaEventKind::token_overrun, out->node}};
+  const IsaReport reclaimed{{}, {IsaEventKind::token_reclaimed, out->node}};
+  Due due{is_overrun ? overrun : reclaimed};
+  if (out->over && out->is_unsure) due.other = is_overrun ? reclaimed : overrun;
+  reports_.push_back(due);
+}
+
+IsaLasAcceptor::Found IsaLasAcceptor::say_reply(const DrivenDlpdu& dlpdu) {
+  const Reply owed = *std::exchange(owed_, std::nullopt);
+  silent_since_ = dlpdu.end;
+  if (out_ && !out_->over) {
+    out_->may_from = std::max(out_->may_from, dlpdu.end + reply_wait());
+    out_->must_by = std::max(out_->must_by, dlpdu.end + reply_wait());
+  }
+  Request* const request = most_urgent(replies_, owed.least);
+  const Priority priority = request != nullptr ? request->priority : owed.least;
+  Octets expected = header_of(static_cast<std::uint8_t>(rules().codes.dt | kFinalOfData), priority, owed.node,
+                              configuration_.address);
+  if (request != nullptr) {
+    expected.insert(expected.end(), request->data.begin(), request->data.end());
+    replies_.at(static_cast<std::size_t>(priority)).pop_front();
+  }
+  if (dlpdu.octets != expected) return LinkObjection{"reply_wrong", hex(expected)};
+  return std::nullopt;
+}
+
 IsaLasAcceptor::Found IsaLasAcceptor::say_dlpdu(const DrivenDlpdu& dlpdu) {
   const unsigned code = dlpdu.octet(0) & 0xF0U;
   if (code == rules().codes.tl) return say_transfer(dlpdu);
   const bool may_show_itself = std::exchange(may_show_itself_, false);
-  if (code == rules().codes.du) return say_data(dlpdu, may_show_itself);
+  if (code == rules().codes.du || code == rules().codes.cd) return say_request(dlpdu, may_show_itself);
   return say_delegation(dlpdu);
 }
 
 Octets IsaLasAcceptor::delegation() const {
   const bool is_sequence = item().type == IsaType::es;
-  const std::uint8_t code = is_sequence ? rules().codes.es : rules().codes.et;
-  Octets octets{static_cast<std::uint8_t>(code | static_cast<unsigned>(item().least)), item().node,
-                configuration_.address};
+  Octets octets = header_of(is_sequence ? rules().codes.es : rules().codes.et, item().least, item().node,
+                            configuration_.address);
   if (!is_sequence) return octets;
   octets.push_back(static_cast<std::uint8_t>(item().duration >> 8));
   octets.push_back(static_cast<std::uint8_t>(item().duration & 0xFF));
@@ -152,13 +260,16 @@ Octets IsaLasAcceptor::delegation() const {
 
 IsaLasAcceptor::Found IsaLasAcceptor::say_delegation(const DrivenDlpdu& dlpdu) {
   const Octets expected = delegation();
-  if (dlpdu.octets != expected)
-    return LinkObjection{"delegation_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
+  if (dlpdu.octets != expected) return LinkObjection{"delegation_wrong", hex(expected)};
   if (dlpdu.begin + slot() + kLinkRounding < due())
     return LinkObjection{"delegation_early", "each item within V(ST) of its time"};
-  out_ = Out{dlpdu.end + reply_wait(), dlpdu.end + reply_wait(), {}, {}};
-  if (item().type == IsaType::es)
+  const Time silent = dlpdu.end + reply_wait();
+  out_ = Out{item().node, silent, silent};
+  if (item().type == IsaType::es) {
     out_->over = dlpdu.end + times(std::int64_t{item().duration} + rules().supervision_margin_octets);
+    out_->is_used = *out_->over < silent;
+    out_->may_from = out_->must_by = std::min(silent, *out_->over);
+  }
   if (++next_ < configuration_.schedule.items.size()) return std::nullopt;
   next_ = 0;
   begin_ += configuration_.schedule.period;
@@ -171,27 +282,29 @@ IsaLasAcceptor::Found IsaLasAcceptor::say_transfer(const DrivenDlpdu& tl) {
   const std::uint16_t version = configuration_.schedule.version;
   const Octets expected{rules().codes.tl, *heir, configuration_.address,
                         static_cast<std::uint8_t>(version >> 8), static_cast<std::uint8_t>(version & 0xFF)};
-  if (tl.octets != expected)
-    return LinkObjection{"transfer_wrong", fmt::format("{:02X}", fmt::join(expected, " "))};
-  out_ = Out{tl.end + reply_wait(), tl.end + reply_wait(), {}, heir};
+  if (tl.octets != expected) return LinkObjection{"transfer_wrong", hex(expected)};
+  out_ = Out{*heir, tl.end + reply_wait(), tl.end + reply_wait()};
+  out_->is_transfer = true;
   return std::nullopt;
 }
 
-IsaLasAcceptor::Found IsaLasAcceptor::say_data(const DrivenDlpdu& du, bool may_show_itself) {
-  Octets said = du.octets;
-  if (!said.empty()) said[0] &= static_cast<std::uint8_t>(~kFinalOfDu);
-  const bool is_empty = said.size() == kHeaderAndCheck - 2;
-  if (may_show_itself && is_empty && du.octet(1) == rules().everybody) return std::nullopt;
-  const Request* const request = most_urgent();
+IsaLasAcceptor::Found IsaLasAcceptor::say_request(const DrivenDlpdu& dlpdu, bool may_show_itself) {
+  Octets said = dlpdu.octets;
+  const bool is_unit_data = (dlpdu.octet(0) & 0xF0U) == rules().codes.du;
+  if (is_unit_data && !said.empty()) said[0] &= static_cast<std::uint8_t>(~kFinalOfData);
+  if (may_show_itself && is_unit_data && said.size() == kHeaderOfData && said[1] == rules().everybody)
+    return std::nullopt;
+  Request* const request = most_urgent(to_send_, Priority::time_available);
   if (request == nullptr) return LinkObjection{"sends_other_data", "nothing: its user has submitted nothing"};
-  Octets expected{static_cast<std::uint8_t>(rules().codes.du | static_cast<unsigned>(request->priority)),
-                  request->destination, configuration_.address};
+  Octets expected = header_of(request->compels ? rules().codes.cd : rules().codes.du, request->priority,
+                              request->destination, configuration_.address);
   expected.insert(expected.end(), request->data.begin(), request->data.end());
-  if (said != expected)
-    return LinkObjection{"sends_other_data", fmt::format("{:02X}", fmt::join(expected, " "))};
-  if (du.end > due() + kLinkRounding)
-    return LinkObjection{"own_data_over_due", "data of its user that ends before the next item is due"};
-  queues_.at(static_cast<std::size_t>(request->priority)).pop_front();
+  if (said != expected) return LinkObjection{"sends_other_data", hex(expected)};
+  if (dlpdu.begin + needed_for(*request) > due() + kLinkRounding)
+    return LinkObjection{"own_data_over_due",
+                         "data of its user that ends, with V(MID) and an EE, before the next item is due"};
+  if (request->compels) awaited_ = Reply{request->destination, dlpdu.end + reply_wait()};
+  to_send_.at(static_cast<std::size_t>(request->priority)).pop_front();
   return std::nullopt;
 }
 

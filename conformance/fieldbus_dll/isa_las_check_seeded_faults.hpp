@@ -71,9 +71,13 @@ class SupervisesLongAfterKept : public JudgesHolders {
 class SecondTransferIgnored : public IsaLas {
   using IsaLas::IsaLas;
   bool order_transfer(std::uint8_t node, Time now) override {
-    return std::exchange(was_ordered_, true) || IsaLas::order_transfer(node, now);
+    return has_handed_over_ || IsaLas::order_transfer(node, now);
   }
-  bool was_ordered_ = false;
+  Time put_on_line(const Octets& octets, Time now) override {
+    has_handed_over_ = has_handed_over_ || octets.front() == rules().codes.tl;
+    return IsaLas::put_on_line(octets, now);
+  }
+  bool has_handed_over_ = false;
 };
 
 class YieldsOnce : public IsaLas {
@@ -87,8 +91,9 @@ class YieldsOnce : public IsaLas {
 class FirstItemSkippedAfterReturn : public IsaLas {
   using IsaLas::IsaLas;
   void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    const bool is_handed_back = las_state() == LasState::standby;
     IsaLas::on_dlpdu(dlpdu, place);
-    if (dlpdu.type == IsaType::tl && dlpdu.destination == address()) advance();
+    if (dlpdu.type == IsaType::tl && dlpdu.destination == address() && is_handed_back) advance();
   }
 };
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <set>
+#include <utility>
+
 #include "conformance/fieldbus_dll/isa_seeded_faults.hpp"
 
 // Link masters that schedule, supervise or hand over otherwise.
@@ -191,6 +194,71 @@ class Yields : public IsaLas {
  private:
   bool yields_to(const IsaDlpdu&) const override { return always_; }
   bool always_;
+};
+
+// What sequences find, since several things come together.
+class IsaEachEventOnce : public IsaLas {
+  using IsaLas::IsaLas;
+  void tell(IsaEventKind kind, std::uint8_t node, Time now) override {
+    if (told_.insert(kind).second) IsaLas::tell(kind, node, now);
+  }
+  std::set<IsaEventKind> told_;
+};
+
+class OverrunTold : public IsaLas {
+  using IsaLas::IsaLas;
+  void tell(IsaEventKind kind, std::uint8_t node, Time now) override {
+    IsaLas::tell(kind == IsaEventKind::token_reclaimed ? IsaEventKind::token_overrun : kind, node, now);
+  }
+};
+
+class OrderRefusedInStandby : public IsaLas {
+  using IsaLas::IsaLas;
+  bool order_transfer(std::uint8_t node, Time now) override {
+    return las_state() != LasState::standby && IsaLas::order_transfer(node, now);
+  }
+};
+
+class FirstOrderStays : public IsaLas {
+  using IsaLas::IsaLas;
+  bool order_transfer(std::uint8_t node, Time now) override {
+    return std::exchange(is_ordered_, true) || IsaLas::order_transfer(node, now);
+  }
+  Time put_on_line(const Octets& octets, Time now) override {
+    if (octets.front() == rules().codes.tl) is_ordered_ = false;
+    return IsaLas::put_on_line(octets, now);
+  }
+  bool is_ordered_ = false;
+};
+
+class OwnDataWithoutReturn : public IsaLas {
+  using IsaLas::IsaLas;
+  Duration needed_for(const IsaRequest& request) const override {
+    const Duration needed = IsaLas::needed_for(request);
+    if (las_state() != LasState::scheduling) return needed;
+    return needed - silence_before_sending() - frame_time(rules().link, octets_on_line(IsaType::ee));
+  }
+};
+
+class TransferIgnoredByScheduler : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    if (las_state() == LasState::standby || dlpdu.type != IsaType::tl) IsaLas::on_dlpdu(dlpdu, place);
+  }
+};
+
+class SchedulerNeverReplies : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    IsaDlpdu other = dlpdu;
+    if (las_state() != LasState::standby && other.type == IsaType::cd) other.destination = other.source;
+    IsaLas::on_dlpdu(other, place);
+  }
+};
+
+class SignOfLifeOfAnybody : public IsaLas {
+  using IsaLas::IsaLas;
+  bool shows_transfer(const IsaDlpdu&) const override { return true; }
 };
 
 }  // namespace fieldproof::conformance::isa_seeded_faults

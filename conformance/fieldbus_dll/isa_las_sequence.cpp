@@ -2,122 +2,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <deque>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "conformance/fieldbus_dll/isa_cases.hpp"
 #include "conformance/fieldbus_dll/isa_las_acceptor.hpp"
+#include "conformance/fieldbus_dll/isa_las_vocabulary.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
-#include "conformance/sequence_settings.hpp"
-#include "protocols/fieldbus_dll/isa_settings.hpp"
 
 namespace fieldproof::conformance {
 namespace {
 
 using fieldbus_dll::IsaConfiguration;
-using fieldbus_dll::IsaSchedule;
 using fieldbus_dll::IsaService;
-using fieldbus_dll::IsaType;
 using fieldbus_dll::Priority;
 
-constexpr int kPeriodOfIsaLas = 600;
 constexpr std::uint8_t kHeirOfIsaLas = 0x12;
+constexpr std::uint8_t kFirstOrdered = 0x13;
 constexpr std::uint8_t kLowerScheduler = 0x08;
 constexpr std::uint8_t kHigherScheduler = 0x30;
 constexpr std::uint8_t kThirdSender = 0x2A;
-constexpr int kMostBeforeTransfer = 4;
-
-constexpr std::array<std::int64_t, 4> kIsaLasCounts{1, 2, 6, 12};
-constexpr std::array<std::int64_t, 4> kIsaLasSizes{0, 1, 8, 30};
-constexpr std::array<std::int64_t, 5> kIsaLasOwnSizes{0, 8, 30, 64, 65};
-
-enum class IsaLasWord : std::uint8_t {
-  obey,
-  silent,
-  use,
-  keep,
-  compel,
-  third,
-  spoilt,
-  submit,
-  transfer,
-  second,
-  resume
-};
-
-// The second of each pair is due while the first is out, the first one later than V(RR): who is handed the
-// link has to show itself before.
-IsaSchedule schedule_of_isa_las() {
-  using enum Priority;
-  return {.version = 0x0102,
-          .period = kPeriodOfIsaLas * kOctetAt31250,
-          .items = {{60 * kOctetAt31250, IsaType::es, 0x21, time_available, 60},
-                    {75 * kOctetAt31250, IsaType::et, 0x22, normal, 0},
-                    {200 * kOctetAt31250, IsaType::es, 0x23, urgent, 100},
-                    {215 * kOctetAt31250, IsaType::et, 0x21, urgent, 0},
-                    {420 * kOctetAt31250, IsaType::et, 0x22, normal, 0},
-                    {430 * kOctetAt31250, IsaType::es, 0x23, time_available, 300}}};
-}
-
-SequenceNumber size_of_holder() {
-  return {"size", 0, 30, 8, kIsaLasSizes};
-}
-
-// Holders of sequences leave room for a station that says something else, and for a reply that does not come.
-constexpr std::array kBoundsOfIsaLas{SettingBound{"preamble_octets", {1, 2}},
-                                     SettingBound{"inter_pdu_delay_octets", {2, 8}},
-                                     SettingBound{"reply_wait_octets", {32, 40}}};
-
-SequenceVocabulary isa_las_vocabulary() {
-  const fieldbus_dll::IsaConfiguration as_made;
-  // In the order of IsaLasWord.
-  return {
-      .words = {{.word = "obey",
-                 .meaning = "so many tokens are returned at once",
-                 .numbers = {{"count", 1, 30, 1, kIsaLasCounts}},
-                 .weight = 6},
-                {.word = "silent", .meaning = "the holder of the next token is silent", .weight = 6},
-                {.word = "use",
-                 .meaning = "the next holder sends data, to the scheduler (0) or to another, and "
-                            "returns its token",
-                 .numbers = {{"to", 0, 1, 0}, size_of_holder()},
-                 .weight = 4},
-                {.word = "keep",
-                 .meaning = "the next holder sends data and is silent then",
-                 .numbers = {size_of_holder()},
-                 .weight = 5},
-                {.word = "compel",
-                 .meaning = "the next holder compels a station that is silent, and returns its token",
-                 .weight = 2},
-                {.word = "third",
-                 .meaning = "a third station sends an EE while a token is out, then its holder does",
-                 .weight = 3},
-                {.word = "spoilt",
-                 .meaning = "the next holder returns its token with faults",
-                 .units = 8,
-                 .weight = 4},
-                {.word = "submit",
-                 .meaning = "the scheduler's user submits data",
-                 .numbers = {{"priority", 1, 3, 1}, {"size", 0, 260, 8, kIsaLasOwnSizes}},
-                 .weight = 5},
-                {.word = "transfer",
-                 .meaning = "the user orders a TL; its heir is silent (0) or takes over (1)",
-                 .numbers = {{"taken", 0, 1, 1}},
-                 .weight = 4},
-                {.word = "second",
-                 .meaning = "a scheduler of a higher (0) or a lower (1) address sends an ET while a token "
-                            "is out",
-                 .numbers = {{"lower", 0, 1, 1}},
-                 .weight = 4},
-                {.word = "resume",
-                 .meaning = "the link is handed back by a TL, first to another",
-                 .weight = 6}},
-      .unit = "octet",
-      .levels_per_unit = kFlipsOfAnOctet,
-      .settings = sequence_settings(fieldbus_dll::kIsaTable, &as_made, kFixedOfLink, kBoundsOfIsaLas),
-      .objection = objection_of(fieldbus_dll::kIsaTable, as_made, expect_judgeable_isa)};
-}
+constexpr std::uint8_t kNoAddress = 0;
+constexpr int kMostBeforeTransfer = 6;
+constexpr std::size_t kSizeOfReply = 8;
 
 IsaConfiguration configuration_of_isa_las(const IsaBench& bench) {
   IsaConfiguration configuration;
@@ -125,6 +36,11 @@ IsaConfiguration configuration_of_isa_las(const IsaBench& bench) {
   configuration.address = bench.address();
   configuration.schedule = schedule_of_isa_las();
   return configuration;
+}
+
+Octets operator+(Octets header, const Octets& data) {
+  header.insert(header.end(), data.begin(), data.end());
+  return header;
 }
 
 class IsaLasSequenceRun {
@@ -136,15 +52,15 @@ class IsaLasSequenceRun {
     for (const SequenceCommand& command : sequence.commands) execute(command);
     const kernel::Time end = bench_.now() + 2 * kPeriodOfIsaLas * kOctetAt31250;
     while (bench_.now() < end) obey();
-    std::vector<Octets> delivered;
-    for (const auto& one : bench_.user().deliveries) delivered.push_back(one.dlpdu.data);
-    judge_.expect(delivered == data_, "data_not_delivered", "the user gets the data of each DU for it",
-                  "other data, or none");
+    judge_reports();
   }
 
  private:
+  using Hold = std::function<void(const DrivenDlpdu&)>;
+
   void execute(const SequenceCommand& command) {
     const auto number = [&](std::size_t n) { return command.numbers.at(n); };
+    const auto size = [&](std::size_t n) { return static_cast<std::size_t>(number(n)); };
     switch (static_cast<IsaLasWord>(command.word)) {
       case IsaLasWord::obey:
         for (std::int64_t n = 0; n < number(0); ++n) obey();
@@ -153,47 +69,82 @@ class IsaLasSequenceRun {
         return with_token([](const DrivenDlpdu&) {});
       case IsaLasWord::use:
         return with_token([&](const DrivenDlpdu& token) {
-          send_data(token, number(0) == 0, static_cast<std::size_t>(number(1)));
+          use(token, static_cast<HolderData>(number(0)), size(1), number(2));
           give_back(token);
         });
       case IsaLasWord::keep:
         return with_token(
-            [&](const DrivenDlpdu& token) { send_data(token, false, static_cast<std::size_t>(number(0))); });
+            [&](const DrivenDlpdu& token) { use(token, HolderData::for_another, size(0), number(1)); });
       case IsaLasWord::compel:
         return with_token([&](const DrivenDlpdu& token) { compel(token); });
       case IsaLasWord::third:
         return with_token([&](const DrivenDlpdu& token) {
-          acceptor_.hear_other(say(bench_.ee(kThirdSender)));
+          say(bench_.ee(kThirdSender));
           give_back(token);
         });
       case IsaLasWord::spoilt:
         return with_token([&](const DrivenDlpdu& token) { give_back_as(token, command); });
       case IsaLasWord::submit:
-        return submit(static_cast<Priority>(number(0)), static_cast<std::size_t>(number(1)));
+        return submit(static_cast<Priority>(number(0)), size(1), size(2));
       case IsaLasWord::transfer:
-        return transfer(number(0) != 0);
+        return transfer(command);
       case IsaLasWord::second:
-        return with_token([&](const DrivenDlpdu&) {
-          another_scheduler(number(0) != 0 ? kLowerScheduler : kHigherScheduler);
+        return with_token([&](const DrivenDlpdu& token) {
+          say(said_by_another(number(0) != 0 ? kLowerScheduler : kHigherScheduler, number(1)));
+          if (!acceptor_.is_standby() && number(2) != 0) give_back(token);
         });
       case IsaLasWord::resume:
-        return resume();
+        return resume(number(0), number(1) != 0);
+      case IsaLasWord::late:
+        return with_token([&](const DrivenDlpdu& token) {
+          wait_until_over(number(0));
+          give_back(token);
+        });
+      case IsaLasWord::overstay:
+        return with_token([&](const DrivenDlpdu& token) { overstay(token, number(0)); });
+      case IsaLasWord::ask:
+        return with_token([&](const DrivenDlpdu& token) { ask(token, static_cast<Priority>(number(0))); });
+      case IsaLasWord::prepare:
+        return submit_for(IsaService::reply_data, static_cast<Priority>(number(0)), IsaBench::kPeer,
+                          bench_.numbered_data(size(1)));
+      case IsaLasWord::request:
+        outcomes_.at(size(0)).push_back(static_cast<PeerAnswer>(number(1)));
+        return submit_for(IsaService::compel, static_cast<Priority>(number(0)), IsaBench::kPeer, {});
+      case IsaLasWord::again:
+        return with_token([&](const DrivenDlpdu&) { say(tl(bench_.address(), kThirdSender, number(0))); });
     }
   }
 
   // ---- what the scheduler says ----
 
-  // Nothing in standby.
+  // Nothing in standby. What it compels is answered.
   std::optional<DrivenDlpdu> next_said() {
-    const bool is_standby = acceptor_.is_standby();
-    const auto one = bench_.next(is_standby ? bench_.now() + kOctetAt31250 * kPeriodOfIsaLas / 4
-                                            : acceptor_.silent_until());
-    if (!one && !is_standby)
-      judge_.fail("line_left_silent", {{"the next item, data that fits, or a TL"}, "silence", bench_.now()});
-    if (!one) return std::nullopt;
-    if (const auto objection = acceptor_.say(*one))
-      judge_.fail(objection->reason, {{objection->expected}, one->text(), one->begin});
+    while (const auto one = next_of_any_kind()) {
+      if ((one->octet(0) & 0xF0U) != bench_.rules().codes.cd) return one;
+      answer(*one);
+    }
+    return std::nullopt;
+  }
+
+  std::optional<DrivenDlpdu> next_of_any_kind() {
+    const kernel::Time until = acceptor_.silent_until();
+    const auto one =
+        bench_.next(until == kernel::kNever ? bench_.now() + kOctetAt31250 * kPeriodOfIsaLas / 4 : until);
+    if (!one && until != kernel::kNever) {
+      const LinkObjection silence = acceptor_.silence();
+      judge_.fail(silence.reason, {{silence.expected}, "silence", bench_.now()});
+    }
+    if (one) {
+      if (const auto objection = acceptor_.say(*one))
+        judge_.fail(objection->reason, {{objection->expected}, one->text(), one->begin});
+    }
+    if (!acceptor_.may_owe_event(bench_.now())) judge_reports();
     return one;
+  }
+
+  void judge_reports() {
+    const std::vector<IsaReport> actual = std::exchange(bench_.user().reports, {});
+    judge_reported(judge_, acceptor_.take_reports(actual), actual, bench_.now());
   }
 
   bool is_token(const DrivenDlpdu& one) const {
@@ -201,7 +152,7 @@ class IsaLasSequenceRun {
     return code == bench_.rules().codes.et || code == bench_.rules().codes.es;
   }
 
-  void with_token(const std::function<void(const DrivenDlpdu&)>& hold) {
+  void with_token(const Hold& hold) {
     while (const auto one = next_said()) {
       if (is_token(*one)) return hold(*one);
     }
@@ -213,94 +164,174 @@ class IsaLasSequenceRun {
 
   // ---- what others say ----
 
-  kernel::Time say(const Octets& octets) {
-    bench_.wait(bench_.least_gap());
-    return bench_.send(octets);
+  Octets header(std::uint8_t code, Priority priority, std::uint8_t to, std::uint8_t from) const {
+    return {bench_.control(code, priority), to, from};
+  }
+  Octets tl(std::uint8_t to, std::uint8_t from, std::int64_t version) const {
+    return {bench_.rules().codes.tl, to, from, static_cast<std::uint8_t>(version >> 8),
+            static_cast<std::uint8_t>(version & 0xFF)};
   }
 
-  void give_back(const DrivenDlpdu& token) { acceptor_.hear_return(say(bench_.ee(token.octet(1)))); }
+  void say(const Octets& octets) {
+    bench_.wait(bench_.least_gap());
+    acceptor_.hear(octets, bench_.send(octets));
+  }
+
+  // A holder does not talk into what the scheduler may say when its token is over.
+  void say_under_token(const Octets& octets) {
+    if (bench_.now() + bench_.least_gap() + bench_.octets(1) <= acceptor_.out_until()) say(octets);
+  }
+
+  void give_back(const DrivenDlpdu& token) { say_under_token(bench_.ee(token.octet(1))); }
 
   void give_back_as(const DrivenDlpdu& token, const SequenceCommand& command) {
     bench_.wait(bench_.least_gap());
-    const bool is_whole = send_link_command(bench_, bench_.ee(token.octet(1)), command);
-    is_whole ? acceptor_.hear_return(bench_.now()) : acceptor_.hear_other(bench_.now());
+    const Octets ee = bench_.ee(token.octet(1));
+    const bool is_whole = send_link_command(bench_, ee, command);
+    is_whole ? acceptor_.hear(ee, bench_.now()) : acceptor_.hear_noise(bench_.now());
   }
 
-  void send_data(const DrivenDlpdu& token, bool is_for_scheduler, std::size_t size) {
-    const Octets data = bench_.numbered_data(size);
-    Octets du{bench_.control(bench_.rules().codes.du, Priority::normal),
-              is_for_scheduler ? bench_.address() : kThirdSender, token.octet(1)};
-    du.insert(du.end(), data.begin(), data.end());
-    acceptor_.hear_data(say(du));
-    if (is_for_scheduler) data_.push_back(data);
+  void use(const DrivenDlpdu& token, HolderData data, std::size_t size, std::int64_t frames) {
+    const auto& codes = bench_.rules().codes;
+    const std::uint8_t to = data == HolderData::for_another     ? kThirdSender
+                            : data == HolderData::for_everybody ? bench_.rules().everybody
+                                                                : bench_.address();
+    const std::uint8_t code = data == HolderData::reply_to_scheduler ? codes.dt : codes.du;
+    for (std::int64_t n = 0; n < frames; ++n)
+      say_under_token(header(code, Priority::normal, to, token.octet(1)) + bench_.numbered_data(size));
   }
 
   void compel(const DrivenDlpdu& token) {
-    acceptor_.hear_cd(
-        say({bench_.control(bench_.rules().codes.cd, Priority::normal), kThirdSender, token.octet(1)}));
+    say(header(bench_.rules().codes.cd, Priority::normal, kThirdSender, token.octet(1)));
     bench_.wait(bench_.reply_wait() + bench_.octets(1) - bench_.least_gap());
     give_back(token);
   }
 
-  void another_scheduler(std::uint8_t address) {
-    acceptor_.hear_scheduler(
-        address, say({bench_.control(bench_.rules().codes.et, Priority::normal), kThirdSender, address}));
+  // So that what comes V(MID) later begins so many octets before.
+  void wait_until_over(std::int64_t octets) {
+    const kernel::Time begin = acceptor_.out_until() - bench_.octets(octets) - bench_.least_gap();
+    if (begin > bench_.now()) bench_.run_until(begin);
   }
 
-  void submit(Priority priority, std::size_t size) {
-    const Octets data = bench_.numbered_data(size);
-    const bool is_taken = bench_.submit_unit_data(priority, data);
-    const bool is_right = acceptor_.submit(priority, IsaBench::kPeer, data, bench_.now());
+  void overstay(const DrivenDlpdu& token, std::int64_t octets) {
+    use(token, HolderData::for_another, 1, 1);
+    wait_until_over(octets);
+    use(token, HolderData::for_another, 30, 1);
+  }
+
+  void ask(const DrivenDlpdu& token, Priority priority) {
+    say(header(bench_.rules().codes.cd, priority, bench_.address(), token.octet(1)));
+    (void)next_said();
+    give_back(token);
+  }
+
+  void answer(const DrivenDlpdu& cd) {
+    const auto priority = static_cast<Priority>(cd.octet(0) & 3U);
+    const auto number = static_cast<std::size_t>(priority);
+    const Octets data =
+        bench_.numbered_data(std::min<std::size_t>(kSizeOfReply, bench_.link().most_data.at(number - 1)));
+    const Octets reply = bench_.dt(priority, data, cd.octet(1));
+    const PeerAnswer outcome = outcomes_.at(number).front();
+    outcomes_.at(number).pop_front();
+    switch (outcome) {
+      case PeerAnswer::replies:
+        return say(reply);
+      case PeerAnswer::is_silent:
+        return;
+      case PeerAnswer::sends_data:
+        return say(header(bench_.rules().codes.du, priority, bench_.address(), kThirdSender) + data);
+      case PeerAnswer::another_replies:
+        return say(bench_.dt(priority, data, kThirdSender));
+      case PeerAnswer::is_none:
+        return say(bench_.dt(priority, data, kNoAddress));
+    }
+  }
+
+  Octets said_by_another(std::uint8_t scheduler, std::int64_t kind) const {
+    const auto& codes = bench_.rules().codes;
+    if (kind == 2) return tl(kThirdSender, scheduler, 1);
+    const Octets token = header(kind == 0 ? codes.et : codes.es, Priority::normal, kThirdSender, scheduler);
+    return kind == 0 ? token : token + Octets{0, 20};
+  }
+
+  // ---- the user ----
+
+  void submit(Priority priority, std::size_t size, std::size_t to) {
+    const auto& rules = bench_.rules();
+    const std::array<std::uint8_t, 4> destinations{IsaBench::kPeer, rules.everybody, rules.first_address,
+                                                   rules.last_address};
+    // None is the sign of life of who was handed the link.
+    const std::size_t least = destinations.at(to) == rules.everybody ? 1 : 0;
+    submit_for(IsaService::unit_data, priority, destinations.at(to),
+               bench_.numbered_data(std::max(size, least)));
+  }
+
+  void submit_for(IsaService service, Priority priority, std::uint8_t destination, const Octets& data) {
+    const bool is_taken = bench_.submit(service, priority, data, destination);
+    const bool is_right = acceptor_.submit(service, priority, destination, data, bench_.now());
     judge_.expect(is_taken == is_right, is_right ? "data_refused" : "data_too_long_taken", [&] {
-      return Mismatch{{fmt::format("data of {} octets is {}", size, is_right ? "taken" : "refused")},
+      return Mismatch{{fmt::format("data of {} octets is {}", data.size(), is_right ? "taken" : "refused")},
                       is_taken ? "taken" : "refused"};
     });
   }
 
+  void order(std::uint8_t heir) {
+    judge_.expect(bench_.order_transfer(heir), "order_refused", "an order to hand the link over is taken",
+                  "refused");
+    acceptor_.order_transfer(heir);
+  }
+
   // What it has begun ends before.
-  void transfer(bool is_taken) {
+  void transfer(const SequenceCommand& command) {
     if (acceptor_.is_standby()) return;
-    bench_.order_transfer(kHeirOfIsaLas);
-    acceptor_.order_transfer(kHeirOfIsaLas);
+    if (command.numbers[2] > 1) order(kFirstOrdered);
+    order(kHeirOfIsaLas);
     for (int said = 0; said < kMostBeforeTransfer; ++said) {
       const auto one = next_said();
-      if (one && (one->octet(0) & 0xF0U) == bench_.rules().codes.tl) {
-        if (is_taken)
-          acceptor_.hear_heir(
-              say({bench_.control(bench_.rules().codes.du, Priority::normal), kThirdSender, kHeirOfIsaLas}));
-        return;
-      }
+      if (one && (one->octet(0) & 0xF0U) == bench_.rules().codes.tl) return take_over(command);
       if (one && is_token(*one)) give_back(*one);
     }
     judge_.fail("no_transfer", {{"a TL as soon as no token is out"}, "none", bench_.now()});
   }
 
-  void resume() {
-    if (!acceptor_.is_standby()) return;
-    const auto tl = [&](std::uint8_t to) {
-      return Octets{bench_.rules().codes.tl, to, kLowerScheduler, 0, 1};
+  void take_over(const SequenceCommand& command) {
+    const auto& codes = bench_.rules().codes;
+    const auto header_for_third = [&](std::uint8_t code, std::uint8_t from) {
+      return header(code, Priority::normal, kThirdSender, from);
     };
-    acceptor_.hear_other(say(tl(kThirdSender)));
+    if (command.numbers[3] != 0) say(header_for_third(codes.du, IsaBench::kPeer));
+    if (command.numbers[0] == 0) return;
+    const std::array shown{header_for_third(codes.du, kHeirOfIsaLas), bench_.ee(kHeirOfIsaLas),
+                           header_for_third(codes.et, kHeirOfIsaLas),
+                           header_for_third(codes.cd, kHeirOfIsaLas)};
+    say(shown.at(static_cast<std::size_t>(command.numbers[1])));
+  }
+
+  void resume(std::int64_t version, bool is_ordered) {
+    if (!acceptor_.is_standby()) return;
+    if (is_ordered) order(kFirstOrdered);
+    say(tl(kThirdSender, kLowerScheduler, version));
     (void)next_said();
-    acceptor_.hear_transfer(say(tl(bench_.address())));
+    say(tl(bench_.address(), kLowerScheduler, version));
   }
 
   IsaBench& bench_;
   CaseJudge& judge_;
   IsaLasAcceptor acceptor_;
-  std::vector<Octets> data_;
+  std::array<std::deque<PeerAnswer>, 4> outcomes_;  // by priority
 };
 
 std::vector<PartialSource> isa_las_sequence_details() {
   using link_sources::own;
   return {{own("V(RR) is 32 octets, VC(UC) the duration and V(ST), items within V(ST) of their time"),
-           {"talks_into_token", "talks_into_transfer", "answers_too_early", "delegation_early",
-            "line_left_silent"}},
+           {"talks_into_token", "talks_into_transfer", "talks_into_reply", "answers_too_early",
+            "delegation_early", "line_left_silent", "no_reply"}},
           {own("the scheduler's own data, where it ends before the next item"),
-           {"sends_other_data", "own_data_over_due", "data_refused", "data_too_long_taken",
-            "data_not_delivered"}},
+           {"sends_other_data", "own_data_over_due", "data_refused", "data_too_long_taken", "reply_wrong"}},
           {own("TL, and the lower address of two schedulers"),
-           {"speaks_unasked", "transfer_unasked", "transfer_wrong", "no_transfer"}}};
+           {"speaks_unasked", "transfer_unasked", "transfer_wrong", "no_transfer", "order_refused"}},
+          {own("what its user is given, and in which order"),
+           {"not_delivered", "delivered_otherwise", "delivered_unasked"}}};
 }
 
 }  // namespace
@@ -320,12 +351,19 @@ const SequenceRole& isa_las_sequence_role() {
        .expected = "What an acceptor of the rules allows.",
        .tags = {},
        .catches = {}},
-      isa_las_vocabulary(),
+      with_beginnings(isa_las_vocabulary(), states_of_an_isa_las()),
       {{DerivedKind::values, {"schedule_late", "line_left_silent"}},
+       {DerivedKind::values, {"sign_of_life_of_anybody", "line_left_silent"}},
+       {DerivedKind::values, {"first_order_stays", "transfer_wrong"}},
+       {DerivedKind::values, {"order_refused_in_standby", "order_refused"}},
        {DerivedKind::faults, {"schedule_not_begun", "line_left_silent"}},
        {DerivedKind::words, {"schedule_early", "delegation_early"}},
+       {DerivedKind::words, {"each_event_once", "not_delivered"}},
+       {DerivedKind::words, {"reclaimed_is_overrun", "delivered_otherwise"}},
+       {DerivedKind::words, {"own_data_without_return", "own_data_over_due"}},
+       {DerivedKind::words, {"transfer_ignored_by_scheduler", "delegation_wrong"}},
        {DerivedKind::states, {"retakes_early", "answers_too_early"}},
-       {DerivedKind::repetitions, {"waits_out_duration", "line_left_silent"}},
+       {DerivedKind::repetitions, {"scheduler_never_replies", "no_reply"}},
        {DerivedKind::settings, {"transfer_without_version", "transfer_wrong"}},
        {DerivedKind::drawn, {"schedule_early", "delegation_early"}}}};
   return role;

@@ -319,6 +319,21 @@ std::vector<IsaRow> isa_las_rows() {
       {"deaf_in_standby", "", "uses no token while another is the scheduler", mutant<DeafInStandby>()},
       {"never_yields", "", "stays when a lower address is the scheduler", mutant<Yields>(false)},
       {"always_yields", "", "leaves to a higher address, too", mutant<Yields>(true)},
+      {"each_event_once", "", "reports each kind of event once", mutant<IsaEachEventOnce>()},
+      {"reclaimed_is_overrun", "", "reports an overrun where a holder was silent", mutant<OverrunTold>()},
+      {"order_refused_in_standby", "", "refuses an order while another is the scheduler",
+       mutant<OrderRefusedInStandby>()},
+      {"first_order_stays", "", "hands over to the first of two that were ordered",
+       mutant<FirstOrderStays>()},
+      {"own_data_without_return", "", "sends what ends before an item, without the time of a return",
+       mutant<OwnDataWithoutReturn>()},
+      {"transfer_ignored_by_scheduler", "",
+       "does not begin its schedule anew by a TL while it is the scheduler",
+       mutant<TransferIgnoredByScheduler>()},
+      {"scheduler_never_replies", "", "answers no CD while it is the scheduler",
+       mutant<SchedulerNeverReplies>()},
+      {"sign_of_life_of_anybody", "", "takes whatever comes after its TL for the sign of life of its heir",
+       mutant<SignOfLifeOfAnybody>()},
   };
 }
 

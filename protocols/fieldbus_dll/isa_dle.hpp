@@ -94,7 +94,9 @@ class IsaDle : public IsaDevice {
 
   // ---- actions ----
   kernel::Time transmit(const IsaDlpdu& dlpdu, kernel::Time now);
-  void tell(IsaEventKind kind, std::uint8_t node, kernel::Time now) { user_->on_event({kind, node}, now); }
+  virtual void tell(IsaEventKind kind, std::uint8_t node, kernel::Time now) {
+    user_->on_event({kind, node}, now);
+  }
   void deliver(const IsaDlpdu& dlpdu, kernel::Time now);
   // Sends a request of this station's; a CD makes it wait for the reply.
   virtual void send(const IsaRequest& request, kernel::Time now);

@@ -193,6 +193,7 @@ void IsaLas::transfer(kernel::Time now) {
 void IsaLas::on_transferred(kernel::Time now) {
   tell(IsaEventKind::transferred, *heir_, now);
   heir_.reset();
+  ordered_heir_.reset();
   enter_las(LasState::standby);
 }
 
