@@ -65,9 +65,7 @@ class Attachments : public ProgramFixture {
     const std::string out = "run" + std::to_string(++runs_);
     std::vector<std::string> words{"run",  suite + cases, "--volume", "quick", "--record",
                                    "none", "--iut",       uri,        "--out", out};
-    if (leaves_out_derived_) words.emplace_back("!+derived");
-    // Those of a basic station again.
-    if (leaves_out_derived_ && suite.ends_with("_las/")) words.push_back("!" + suite + "standby/**");
+    leave_out(suite, words);
     if (kernel::kIsSanitized && cases == "**")
       words.insert(words.end(), {"--shard", "1/" + std::to_string(kOneOf)});
     if (!pics.empty()) {
@@ -95,7 +93,7 @@ class Attachments : public ProgramFixture {
   // How many cases of a whole suite are judged.
   std::size_t count_of(const std::string& suite) {
     std::vector<std::string> words{"list", suite + "**", "--count"};
-    if (leaves_out_derived_) words.emplace_back("!+derived");
+    leave_out(suite, words);
     const std::size_t all = std::stoul(prepared(words).run().out);
     return (all + kOneOf - 1) / kOneOf;
   }
@@ -113,6 +111,13 @@ class Attachments : public ProgramFixture {
   }
 
  private:
+  void leave_out(const std::string& suite, std::vector<std::string>& words) const {
+    if (!leaves_out_derived_) return;
+    words.emplace_back("!+derived");
+    // Those of a basic station again.
+    if (suite.ends_with("_las/")) words.push_back("!" + suite + "standby/**");
+  }
+
   inline static const std::set<std::string> kOfLevels{
       "frame/without_its_code_is_none", "frame/a_start_delimiter_begins_anew",
       "frame/a_tail_is_no_silence",     "frame/two_in_one_transmission_are_received",
@@ -147,6 +152,7 @@ class ServedRoles : public Attachments, public testing::WithParamInterface<Serve
 TEST_P(ServedRoles, BuiltInStationInAProcessIsJudgedAsInside) {
   const std::string suite = std::string(GetParam().role) + "/";
   const std::string station = "exec:" + in_quotes(FIELDPROOF_EXE) + " station " + GetParam().role + " ";
+  if (kernel::kIsSanitized) leave_out_derived();
   const Cases inside = judged("ref", "**", {}, {}, suite);
   EXPECT_EQ(inside.size(), count_of(suite));
   EXPECT_EQ(judged(station, "**", {}, {}, suite), inside);

@@ -22,7 +22,7 @@ namespace {
 constexpr const char* kSome = R"({
   "title": "some",
   "jobs": [
-    { "verb": "run", "of": "valve_bus/node/read/is_answered", "volume": "quick", "seed": { "from": 1, "count": 12 } },
+    { "verb": "run", "of": "valve_bus/node/read/is_answered", "volume": "quick", "seed": { "from": 1, "count": 4 } },
     { "verb": "run", "of": "valve_bus/node/write/drives_the_valves", "iut": ["ref", "mutant:valves_late"] },
     { "verb": "check", "of": ["valve_bus/node"], "cases": 5, "seed": [1, 2] },
     { "verb": "emc", "of": "valve_bus", "duration": "1s", "test_levels": [3, 4], "repetition": "5kHz", "polarity": "-" }
@@ -54,7 +54,7 @@ class CampaignVerb : public ProgramFixture {
 TEST_F(CampaignVerb, HasTheSameBytesForAnyNumberOfWorkers) {
   const std::string expected = whole();
   EXPECT_HOLDS(expected,
-               "\"command\": \"fieldproof run valve_bus/node/read/is_answered --volume=quick --seed=12\"");
+               "\"command\": \"fieldproof run valve_bus/node/read/is_answered --volume=quick --seed=4\"");
   EXPECT_EQ(campaign({"some.json", "--workers", "1", "--out", "one"}).exit_code, 1);
   EXPECT_EQ(read("one/campaign.json"), expected);
   // And whatever the environment says.
@@ -64,8 +64,8 @@ TEST_F(CampaignVerb, HasTheSameBytesForAnyNumberOfWorkers) {
   EXPECT_EQ(four.exit_code, 1) << four.err;
   EXPECT_EQ(read("four/campaign.json"), expected);
   const auto document = json("whole/campaign.json");
-  EXPECT_EQ(document["counts"]["jobs"], 18);
-  EXPECT_EQ(document["jobs"][13]["failed"][0], "valve_bus/node/write/drives_the_valves");
+  EXPECT_EQ(document["counts"]["jobs"], 10);
+  EXPECT_EQ(document["jobs"][5]["failed"][0], "valve_bus/node/write/drives_the_valves");
   EXPECT_EQ(document["ledger"]["accepted_wrong"][0]["total"], document["ledger"]["counts"]["sent"]);
   expect_valid({"whole/campaign.json"}, "../../campaign/campaign_result");
 }
@@ -74,7 +74,7 @@ TEST_F(CampaignVerb, HasTheSameBytesForAnyNumberOfWorkers) {
 TEST_F(CampaignVerb, LeavesTheCaseOfAFailureForReplay) {
   whole();
   const Called called =
-      call({"replay", "whole/jobs/14/out/cases/valve_bus+node+write+drives_the_valves/case.json"});
+      call({"replay", "whole/jobs/6/out/cases/valve_bus+node+write+drives_the_valves/case.json"});
   EXPECT_EQ(called.exit_code, 1) << called.err;
   EXPECT_HOLDS(called.out, "equal: verdict, reason and fingerprint are those of the stored run");
 }
@@ -262,9 +262,9 @@ TEST_F(CampaignVerb, FindsAJobThatHangs) {
 TEST_F(CampaignVerb, IsEstimatedBeforeItRuns) {
   const Called called = campaign({"some.json", "--dry-run", "--workers", "4"});
   EXPECT_EQ(called.exit_code, 0) << called.err;
-  EXPECT_HOLDS(called.out, "        12  ");
+  EXPECT_HOLDS(called.out, "         4  ");
   EXPECT_HOLDS(called.out, "fieldproof emc valve_bus --duration=1s --test-levels=3");
-  EXPECT_HOLDS(called.out, "18 jobs, about ");
+  EXPECT_HOLDS(called.out, "10 jobs, about ");
   EXPECT_HOLDS(called.out, " in 4 at a time");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "campaigns"));
   write("no.json",
@@ -280,8 +280,8 @@ TEST_F(CampaignVerb, IsWatchedFromElsewhereUntilItEnds) {
       "sleep 0.01; done; "
       "\"$F\" campaign --watch seen");
   EXPECT_EQ(watched.exit_code, 1) << watched.err;
-  EXPECT_HOLDS(watched.out, "job 14: exit code 1\n");
-  EXPECT_HOLDS(watched.out, "18 of 18 jobs done, ");
+  EXPECT_HOLDS(watched.out, "job 6: exit code 1\n");
+  EXPECT_HOLDS(watched.out, "10 of 10 jobs done, ");
   EXPECT_HOLDS(watched.out, "ended with exit code 1\n");
   std::filesystem::remove(folder_ / "seen/campaign.json");
   const Called left = campaign({"--watch", "seen"});
@@ -321,7 +321,7 @@ TEST_F(CampaignVerb, KeepsWhatIsJudgedWhenTheDiskIsFull) {
   EXPECT_EQ(called.exit_code, 74) << called.out;
   EXPECT_HOLDS(called.err, "No space left on device");
   EXPECT_EQ(read("resumed_code.txt"), "1\n") << read("resumed.txt");
-  EXPECT_HOLDS(read("resumed.txt"), " of 18 jobs are done already");
+  EXPECT_HOLDS(read("resumed.txt"), " of 10 jobs are done already");
   EXPECT_EQ(read("after.json"), expected);
 }
 

@@ -115,8 +115,14 @@ endfunction()
 
 # Under a sanitizer a program takes longer to begin than most of its tests take: they are run in eight parts, not one by
 # one. The page is looked at in a browser, in which nothing of ours is instrumented.
+# What a function leaves behind on its stack is looked at where its code is tested alone: in whole suites and programs,
+# which come through the same code, that and long traces of each allocation would take half as much time again.
 function(fieldproof_tests_in_parts name folder environment)
   set(parts 8)
+  if(folder MATCHES "^(conformance|cli)$")
+    string(APPEND environment
+      ";ASAN_OPTIONS=strict_string_checks=1:detect_stack_use_after_return=0:malloc_context_size=1")
+  endif()
   math(EXPR last "${parts} - 1")
   foreach(part RANGE ${last})
     add_test(NAME ${folder}/part_${part} COMMAND ${name} "--gtest_filter=-*SerialRuns*")

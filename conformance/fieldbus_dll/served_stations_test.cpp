@@ -101,6 +101,8 @@ TEST_P(ServedLinkRoles, ReferenceIsJudgedInEveryCaseAsInside) {
   int judged = 0;
   for (const TestCase& test_case : suite->cases()) {
     if (test_case.role() != GetParam()) continue;
+    // Those of a basic station again.
+    if (kernel::kIsSanitized && test_case.id.find("/standby/") != std::string::npos) continue;
     ++judged;
     expect_judged_alike(test_case, outcome_of(*suite, test_case, "outside"),
                         outcome_of(suite_inside(), test_case, "ref"));

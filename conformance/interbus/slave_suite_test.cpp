@@ -61,7 +61,9 @@ void expect_reference_passes(const SlaveSetting& setting) {
 }
 
 TEST(SlaveSuite, NoFalseAlarmAtOtherPositions) {
-  for (const auto& [position, stations] : {std::pair{2, 3}, {1, 2}, {3, 3}, {5, 8}}) {
+  for (kernel::FewerIfSanitized few(4);
+       const auto& [position, stations] : {std::pair{2, 3}, {1, 2}, {3, 3}, {5, 8}}) {
+    if (few.leaves_out()) continue;
     for (std::uint64_t seed = 1; seed <= (kernel::kIsSanitized ? 1 : 5); ++seed) {
       SlaveSetting setting;
       setting.seed = seed;
