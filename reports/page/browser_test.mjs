@@ -50,9 +50,8 @@ let failures = 0;
 
 const whole = (page) => page.waitForSelector("body[data-is-whole]");
 
-// Opens the page anew for each check; whatever it complains about or asks for is a failure of the check.
-async function check(name, act, options = {}, hash = "") {
-  const begin = Date.now();
+// Opens the page; whatever it complains about or asks for is in `trouble`.
+async function open(options, hash) {
   const context = await browser.newContext({viewport: {width: 1280, height: 900}, ...options});
   const page = await context.newPage();
   page.setDefaultTimeout(90000);
@@ -63,17 +62,36 @@ async function check(name, act, options = {}, hash = "") {
   page.on("request", (request) => {
     if (request.url().split("#")[0] !== address && !request.url().startsWith("data:")) trouble.push(`request: ${request.url()}`);
   });
+  await page.goto(address + hash);
+  await whole(page);
+  return {context, page, trouble};
+}
+
+async function judge(name, opened, act) {
+  const begin = Date.now();
   try {
-    await page.goto(address + hash);
-    await whole(page);
+    const {page, trouble} = await opened;
     await act(page);
-    expect(trouble.length === 0, trouble.join("; "));
+    expect(trouble.length === 0, trouble.splice(0).join("; "));
     console.log(`ok      ${name} (${Date.now() - begin} ms)`);
   } catch (error) {
     failures += 1;
     console.log(`FAILED  ${name}: ${error.message}`);
   }
-  await context.close();
+}
+
+// On a page of its own, which the check may change.
+async function check(name, act, options = {}, hash = "") {
+  const opened = open(options, hash);
+  await judge(name, opened, act);
+  await opened.then(({ context }) => context.close(), () => {});
+}
+
+// Only looks: one page serves all that do.
+let untouched;
+async function look(name, act) {
+  untouched ??= open({}, "");
+  await judge(name, untouched, act);
 }
 
 const shownCases = (page) => page.locator("tr.case:visible").count();
@@ -90,14 +108,14 @@ async function openFirst(page) {
 
 const ticks = (stage) => stage.locator("text.tick").allTextContents().then((texts) => texts.join("|"));
 
-await check("the plan of faults says what it did, and what of it never hit", async (page) => {
+await look("the plan of faults says what it did, and what of it never hit", async (page) => {
   const faults = firstRun?.results.planned_faults ?? [];
   const text = await page.locator("body").innerText();
   for (const fault of faults.slice(0, 20)) expect(text.includes(`${fault.place}${fault.name ? ` (${fault.name})` : ""}: `), `${fault.place} is named`);
   expectEqual(text.includes("Planned faults that never hit"), faults.some((fault) => fault.cases_hit === 0), "the notice");
 });
 
-await check("the page is whole, asks for nothing and holds no other script", async (page) => {
+await look("the page is whole, asks for nothing and holds no other script", async (page) => {
   expectEqual(await page.locator("script").count(), 3, "scripts");
   expectEqual(await page.locator("img, iframe, object, embed, [onerror], [onload], [style*=url]").count(), 0, "foreign elements");
   expectEqual(await page.locator("tr.case").count(), cases.length, "lines of cases");
@@ -114,7 +132,7 @@ if (!process.env.FIELDPROOF_ANY_LOAD_TIME) {
   }
   // The machine may be busy; that the page can open so fast is what is held.
   const least = Math.min(...times);
-  await check(`it opens in less than ${kMostLoadMs} ms: ${times.map(Math.round).join(", ")}`, async () =>
+  await look(`it opens in less than ${kMostLoadMs} ms: ${times.map(Math.round).join(", ")}`, async () =>
     expect(least < kMostLoadMs, `${Math.round(least)} ms`));
 }
 
@@ -145,7 +163,7 @@ if (firstRun && !process.env.FIELDPROOF_ANY_LOAD_TIME) {
   const metric = (wanted) => metrics.find(({ name }) => name === wanted).value;
   const seconds = metric("TaskDuration");
   const heap = metric("JSHeapUsedSize") / 1e6;
-  await check(`a hundred thousand results take ${seconds.toFixed(2)} s of ${kMostSeconds} s and ${Math.round(heap)} MB of objects`, async () => {
+  await look(`a hundred thousand results take ${seconds.toFixed(2)} s of ${kMostSeconds} s and ${Math.round(heap)} MB of objects`, async () => {
     expect(seconds > 0 && seconds < kMostSeconds, "they take longer");
     expect(heap < 150, "they take more memory");
     expectEqual(await page.locator("tr.case").count(), 500, "lines that are made at once");
@@ -156,11 +174,11 @@ if (firstRun && !process.env.FIELDPROOF_ANY_LOAD_TIME) {
   rmSync(folder, {recursive: true});
 }
 
-await check("no button offers less than one more case", async (page) => {
+await look("no button offers less than one more case", async (page) => {
   for (const text of await page.locator(".more-lines").allTextContents()) expect(!text.includes("-"), `"${text}"`);
 });
 
-await check("numbers of the summary are those of the run", async (page) => {
+await look("numbers of the summary are those of the run", async (page) => {
   if (!firstRun) return;
   const text = await page.locator("#summary").innerText();
   const { counts } = firstRun.results;
@@ -170,7 +188,7 @@ await check("numbers of the summary are those of the run", async (page) => {
   if (!firstRun.results.run.complete) expect(text.includes("incomplete"), "that it is incomplete is not reported");
 });
 
-await check("title, headline and icon say the verdict of all that is on the page", async (page) => {
+await look("title, headline and icon say the verdict of all that is on the page", async (page) => {
   const { verdict, sentence, caveats, runs, documents } = data.joined;
   expect((await page.title()).startsWith(`${verdict}: `), `the title is "${await page.title()}"`);
   const headline = page.locator(".headline");
@@ -185,7 +203,7 @@ await check("title, headline and icon say the verdict of all that is on the page
   }
 });
 
-await check("the cover tells what was tested and what came out", async (page) => {
+await look("the cover tells what was tested and what came out", async (page) => {
   expectEqual(await page.locator("#cover").count(), data.cover ? 1 : 0, "covers");
   if (!data.cover) return;
   const text = await page.locator("#cover").innerText();
@@ -304,7 +322,7 @@ if (withTimeLine) {
   }, {viewport: {width: 390, height: 844}, isMobile: true, hasTouch: true});
 }
 
-await check("each document has its section, its charts and its command", async (page) => {
+await look("each document has its section, its charts and its command", async (page) => {
   const ids = {"fieldproof/measurement/1": "timing", "fieldproof/emc/1": "immunity", "fieldproof/residual/1": "residual",
     "fieldproof/publication/2": "publication", "fieldproof/matrix/1": "matrix", "fieldproof/campaign/1": "campaign", "fieldproof/emc_fit/1": "fit", "fieldproof/fuzz/1": "fuzz"};
   for (const schema of sections) {
@@ -324,7 +342,7 @@ await check("each document has its section, its charts and its command", async (
 });
 
 // What is drawn differs by shape, too; here that the legend tells it, and that what never changes has no chart.
-await check("cycle times stand over time, with bursts, phases, closed form and the longest", async (page) => {
+await look("cycle times stand over time, with bursts, phases, closed form and the longest", async (page) => {
   const courses = data.documents.filter(({ content }) => content.schema === "fieldproof/measurement/1")
       .flatMap(({ content }) => content.series).map(({ course }) => course).filter((course) => course?.runs.some(({ points }) => points.length));
   const pointsOf = ({ runs }) => runs.flatMap(({ points }) => points);
@@ -349,7 +367,7 @@ await check("cycle times stand over time, with bursts, phases, closed form and t
 });
 
 // The band is the one thing that is warm at the top of the plot.
-await check("bands of bursts are drawn where bursts were", async (page) => {
+await look("bands of bursts are drawn where bursts were", async (page) => {
   const course = data.documents.flatMap(({ content }) => content.series ?? []).map((one) => one.course).find((one) => one?.runs.some(({ bursts }) => bursts.length));
   if (!course) return;
   const figure = page.locator("figure.course").first();
@@ -366,7 +384,7 @@ await check("bands of bursts are drawn where bursts were", async (page) => {
   expect(shares.outside[3] < 50, `outside ${shares.outside}`);
 });
 
-await check("a search of fuzz tells its finding with input and command, what was tried, and how coverage grew", async (page) => {
+await look("a search of fuzz tells its finding with input and command, what was tried, and how coverage grew", async (page) => {
   const searches = data.documents.filter(({ content }) => content.schema === "fieldproof/fuzz/1");
   for (const [at, { content }] of searches.entries()) {
     const place = page.locator("#fuzz > article").nth(at);
@@ -382,7 +400,7 @@ await check("a search of fuzz tells its finding with input and command, what was
   }
 });
 
-await check("two runs that are compared show what changed first, and both time lines of a case", async (page) => {
+await look("two runs that are compared show what changed first, and both time lines of a case", async (page) => {
   expectEqual(await page.locator("#comparison").count(), data.comparison ? 1 : 0, "comparisons");
   if (!data.comparison) return;
   const text = await page.locator("#comparison").innerText();
@@ -394,7 +412,7 @@ await check("two runs that are compared show what changed first, and both time l
   }
 });
 
-await check("a history tells what is flaky, what began to fail and what was left out", async (page) => {
+await look("a history tells what is flaky, what began to fail and what was left out", async (page) => {
   expectEqual(await page.locator("#history").count(), data.history ? 1 : 0, "histories");
   if (!data.history) return;
   const text = await page.locator("#history").textContent();
@@ -403,7 +421,7 @@ await check("a history tells what is flaky, what began to fail and what was left
   for (const {words} of data.history.quantities) expect(text.toLowerCase().includes(words.toLowerCase()), `not told: ${words}`);
 });
 
-await check("a campaign tells each finding with its command, its decision, and the criterion of each level and pulses", async (page) => {
+await look("a campaign tells each finding with its command, its decision, and the criterion of each level and pulses", async (page) => {
   const campaigns = data.documents.filter(({ content }) => content.schema === "fieldproof/campaign/1");
   for (const [at, { content }] of campaigns.entries()) {
     const place = page.locator("#campaign > article").nth(at);
