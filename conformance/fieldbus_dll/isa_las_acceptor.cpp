@@ -46,8 +46,10 @@ bool IsaLasAcceptor::submit(IsaService service, Priority priority, std::uint8_t 
   return true;
 }
 
-void IsaLasAcceptor::order_transfer(std::uint8_t heir) {
-  if (!is_standby_) ordered_ = heir;
+void IsaLasAcceptor::order_transfer(std::uint8_t heir, Time now) {
+  if (is_standby_) return;
+  ordered_ = heir;
+  ordered_at_ = now;
 }
 
 std::vector<IsaReport> IsaLasAcceptor::take_reports(const std::vector<IsaReport>& actual) {
@@ -173,14 +175,23 @@ Time IsaLasAcceptor::silent_until() const {
     const Time from = std::max(free_by(), submitted_);
     if (from + slot() + needed_for(*request) <= due()) wanted = std::min(wanted, from);
   }
-  if (ordered_) wanted = silent_since_;
+  if (ordered_) wanted = std::max(silent_since_, ordered_at_);
   if (!has_shown_itself_) wanted = std::min(wanted, silent_since_ + reply_wait() - slot());
   return std::max(wanted, free_by()) + slot() + kLinkRounding;
 }
 
 LinkObjection IsaLasAcceptor::silence() const {
   if (owed_) return {"no_reply", "a DT within V(FD) after a CD for it"};
-  return {"line_left_silent", "the next item, data that fits, or a TL"};
+  if (ordered_)
+    return {"line_left_silent", fmt::format("the TL to {:02X} that its user has ordered", *ordered_)};
+  if (!has_shown_itself_) return {"line_left_silent", "something within V(RR) after it was handed the link"};
+  Queues queues = to_send_;
+  const bool is_over = due() + slot() < silent_until();
+  if (const Request* const request = most_urgent(queues, Priority::time_available); request && !is_over)
+    return {"line_left_silent", "the data of its user, or the item that is due: " + hex(delegation())};
+  return {"line_left_silent",
+          fmt::format("{}, which is due {} ms after its supply", hex(delegation()),
+                      static_cast<double>((due() - kernel::kStart) / kernel::kMicrosecond) / 1000)};
 }
 
 // ---- what it says ----

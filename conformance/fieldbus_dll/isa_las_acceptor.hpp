@@ -40,7 +40,7 @@ class IsaLasAcceptor {
   // False: the station must refuse it.
   bool submit(fieldbus_dll::IsaService service, Priority priority, std::uint8_t destination,
               const Octets& data, kernel::Time now);
-  void order_transfer(std::uint8_t heir);
+  void order_transfer(std::uint8_t heir, kernel::Time now);
   // What its user must have been given since this was asked last. Where two events are right, that of
   // `actual`, which it has been given.
   std::vector<IsaReport> take_reports(const std::vector<IsaReport>& actual);
@@ -129,6 +129,7 @@ class IsaLasAcceptor {
   std::optional<Reply> awaited_;
   std::optional<Reply> owed_;
   std::optional<std::uint8_t> ordered_;
+  kernel::Time ordered_at_ = kernel::kStart;
   bool is_standby_ = false;
   bool has_shown_itself_ = true;
   bool may_show_itself_ = false;  // once, also after a TL that was not taken

@@ -181,7 +181,7 @@ TEST(IsaLasAcceptor, WhoHandedOverIsSilentUntilItIsHandedBack) {
   const Octets tl{0x70, 0x12, 0x10, 1, 2};
   EXPECT_EQ(las_reason_in(acceptor().say(las_said_at(8, tl))), "transfer_unasked");
   IsaLasAcceptor one = acceptor();
-  one.order_transfer(0x12);
+  one.order_transfer(0x12, las_octet_at(0));
   ASSERT_EQ(las_reason_in(one.say(las_said_at(8, tl))), "");
   IsaLasAcceptor early = one;
   EXPECT_EQ(las_reason_in(early.say(las_said_at(40, kEt))), "talks_into_transfer");

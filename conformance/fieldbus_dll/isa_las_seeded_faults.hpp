@@ -222,11 +222,20 @@ class OrderRefusedInStandby : public IsaLas {
 class FirstOrderStays : public IsaLas {
   using IsaLas::IsaLas;
   bool order_transfer(std::uint8_t node, Time now) override {
+    if (las_state() == LasState::standby) return true;
     return std::exchange(is_ordered_, true) || IsaLas::order_transfer(node, now);
   }
   Time put_on_line(const Octets& octets, Time now) override {
     if (octets.front() == rules().codes.tl) is_ordered_ = false;
     return IsaLas::put_on_line(octets, now);
+  }
+  void tell(IsaEventKind kind, std::uint8_t node, Time now) override {
+    if (kind == IsaEventKind::scheduler_left) is_ordered_ = false;
+    IsaLas::tell(kind, node, now);
+  }
+  void stop(Time now) override {
+    is_ordered_ = false;
+    IsaLas::stop(now);
   }
   bool is_ordered_ = false;
 };
@@ -254,6 +263,94 @@ class SchedulerNeverReplies : public IsaLas {
     if (las_state() != LasState::standby && other.type == IsaType::cd) other.destination = other.source;
     IsaLas::on_dlpdu(other, place);
   }
+};
+
+class EndWithAReasonIgnored : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    IsaDlpdu other = dlpdu;
+    if (other.type == IsaType::ee && other.reason != EndReason::nothing_to_send)
+      other.source = other.destination;
+    IsaLas::on_dlpdu(other, place);
+  }
+};
+
+class SignedAddresses : public IsaLas {
+  using IsaLas::IsaLas;
+  bool yields_to(const IsaDlpdu& other) const override {
+    return static_cast<std::int8_t>(other.source) < static_cast<std::int8_t>(address());
+  }
+};
+
+class StandbyAfterSupply : public IsaLas {
+  using IsaLas::IsaLas;
+  bool start(Time now) override {
+    return std::exchange(had_supply_, true) ? IsaDle::start(now) : IsaLas::start(now);
+  }
+  bool had_supply_ = false;
+};
+
+// Schedules that are not as they were given, or are not run to their end.
+class OtherSchedule : public IsaLas {
+ public:
+  OtherSchedule(const IsaConfiguration& configuration, void (*change)(fieldbus_dll::IsaSchedule&))
+      : IsaLas(changed(configuration, change)) {}
+
+ private:
+  static IsaConfiguration changed(IsaConfiguration configuration,
+                                  void (*change)(fieldbus_dll::IsaSchedule&)) {
+    change(configuration.schedule);
+    return configuration;
+  }
+};
+
+class ClockOf32Bits : public IsaLas {
+  using IsaLas::IsaLas;
+  Time due(const IsaScheduleItem& item) const override {
+    const Time due = IsaLas::due(item);
+    return (due - kernel::kStart) / kernel::kMicrosecond < 0x1'0000'0000 ? due : kernel::kNever;
+  }
+};
+
+class NothingAfterItsSchedule : public IsaLas {
+ public:
+  NothingAfterItsSchedule(const IsaConfiguration& configuration, bool begins_again)
+      : IsaLas(configuration), begins_again_(begins_again) {}
+
+ private:
+  bool is_over() const {
+    return configuration().schedule.period == Duration{} && passed_ >= configuration().schedule.items.size();
+  }
+  void advance() override {
+    ++passed_;
+    IsaLas::advance();
+  }
+  bool submit(const IsaRequest& request, Time now) override {
+    return (is_over() && begins_again_) || IsaLas::submit(request, now);
+  }
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    if (dlpdu.type == IsaType::tl && is_over() && !begins_again_) return;
+    if (dlpdu.type == IsaType::tl) passed_ = 0;
+    IsaLas::on_dlpdu(dlpdu, place);
+  }
+  bool begins_again_;
+  std::size_t passed_ = 0;
+};
+
+class SignOfLifeFirst : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    has_taken_ = has_taken_ || (dlpdu.type == IsaType::tl && dlpdu.destination == address());
+    IsaLas::on_dlpdu(dlpdu, place);
+  }
+  Time due(const IsaScheduleItem& item) const override {
+    return IsaLas::due(item) + octet_times(has_taken_ ? 16 : 0);
+  }
+  Time put_on_line(const Octets& octets, Time now) override {
+    has_taken_ = false;
+    return IsaLas::put_on_line(octets, now);
+  }
+  bool has_taken_ = false;
 };
 
 class SignOfLifeOfAnybody : public IsaLas {

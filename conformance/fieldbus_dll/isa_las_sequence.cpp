@@ -24,11 +24,12 @@ using fieldbus_dll::Priority;
 constexpr std::uint8_t kHeirOfIsaLas = 0x12;
 constexpr std::uint8_t kFirstOrdered = 0x13;
 constexpr std::uint8_t kLowerScheduler = 0x08;
-constexpr std::uint8_t kHigherScheduler = 0x30;
+constexpr std::array<std::uint8_t, 4> kOtherSchedulers{0x30, kLowerScheduler, 0xF7, 0x0F};
 constexpr std::uint8_t kThirdSender = 0x2A;
 constexpr std::uint8_t kNoAddress = 0;
 constexpr int kMostBeforeTransfer = 6;
 constexpr std::size_t kSizeOfReply = 8;
+constexpr std::uint8_t kOrderOfTransfer = 0x03;
 
 IsaConfiguration configuration_of_isa_las(const IsaBench& bench) {
   IsaConfiguration configuration;
@@ -79,7 +80,7 @@ class IsaLasSequenceRun {
         return with_token([&](const DrivenDlpdu& token) { compel(token); });
       case IsaLasWord::third:
         return with_token([&](const DrivenDlpdu& token) {
-          say(bench_.ee(kThirdSender));
+          say(said_by_third(number(0)));
           give_back(token);
         });
       case IsaLasWord::spoilt:
@@ -90,11 +91,12 @@ class IsaLasSequenceRun {
         return transfer(command);
       case IsaLasWord::second:
         return with_token([&](const DrivenDlpdu& token) {
-          say(said_by_another(number(0) != 0 ? kLowerScheduler : kHigherScheduler, number(1)));
+          if (number(3) != 0) order(kHeirOfIsaLas);
+          say(said_by_another(kOtherSchedulers.at(size(0)), number(1)));
           if (!acceptor_.is_standby() && number(2) != 0) give_back(token);
         });
       case IsaLasWord::resume:
-        return resume(number(0), number(1) != 0);
+        return resume(number(0), number(1) != 0, number(2));
       case IsaLasWord::late:
         return with_token([&](const DrivenDlpdu& token) {
           wait_until_over(number(0));
@@ -103,7 +105,8 @@ class IsaLasSequenceRun {
       case IsaLasWord::overstay:
         return with_token([&](const DrivenDlpdu& token) { overstay(token, number(0)); });
       case IsaLasWord::ask:
-        return with_token([&](const DrivenDlpdu& token) { ask(token, static_cast<Priority>(number(0))); });
+        return with_token(
+            [&](const DrivenDlpdu& token) { ask(token, static_cast<Priority>(number(0)), number(1) != 0); });
       case IsaLasWord::prepare:
         return submit_for(IsaService::reply_data, static_cast<Priority>(number(0)), IsaBench::kPeer,
                           bench_.numbered_data(size(1)));
@@ -112,6 +115,18 @@ class IsaLasSequenceRun {
         return submit_for(IsaService::compel, static_cast<Priority>(number(0)), IsaBench::kPeer, {});
       case IsaLasWord::again:
         return with_token([&](const DrivenDlpdu&) { say(tl(bench_.address(), kThirdSender, number(0))); });
+      case IsaLasWord::end:
+        return with_token([&](const DrivenDlpdu& token) {
+          Octets ee = bench_.ee(token.octet(1));
+          ee[1] = number(1) == 0 ? ee[1] : kThirdSender;
+          ee[3] = static_cast<std::uint8_t>(number(0));
+          say_under_token(ee);
+        });
+      case IsaLasWord::pause:
+        if (bench_.next_begins(bench_.now() + bench_.octets(number(0)))) obey();
+        return;
+      case IsaLasWord::supply:
+        return lose_supply(number(0));
     }
   }
 
@@ -135,6 +150,10 @@ class IsaLasSequenceRun {
       judge_.fail(silence.reason, {{silence.expected}, "silence", bench_.now()});
     }
     if (one) {
+      judge_.expect(one->end - one->begin == bench_.frame(one->octets.size()), "preamble_wrong", [&] {
+        return Mismatch{
+            {fmt::format("{} octets of preamble", bench_.link().preamble_octets)}, one->text(), one->begin};
+      });
       if (const auto objection = acceptor_.say(*one))
         judge_.fail(objection->reason, {{objection->expected}, one->text(), one->begin});
     }
@@ -219,10 +238,10 @@ class IsaLasSequenceRun {
     use(token, HolderData::for_another, 30, 1);
   }
 
-  void ask(const DrivenDlpdu& token, Priority priority) {
+  void ask(const DrivenDlpdu& token, Priority priority, bool is_returned) {
     say(header(bench_.rules().codes.cd, priority, bench_.address(), token.octet(1)));
     (void)next_said();
-    give_back(token);
+    if (is_returned) give_back(token);
   }
 
   void answer(const DrivenDlpdu& cd) {
@@ -244,7 +263,21 @@ class IsaLasSequenceRun {
         return say(bench_.dt(priority, data, kThirdSender));
       case PeerAnswer::is_none:
         return say(bench_.dt(priority, data, kNoAddress));
+      case PeerAnswer::replies_late:
+        bench_.wait(bench_.reply_wait() - bench_.octets(1) - bench_.least_gap());
+        return say(reply);
+      case PeerAnswer::replies_urgently:
+        return say(bench_.dt(Priority::urgent, {}, cd.octet(1)));
+      case PeerAnswer::hands_over:
+        return say(tl(bench_.address(), kThirdSender, 1));
     }
+  }
+
+  Octets said_by_third(std::int64_t kind) const {
+    const auto& codes = bench_.rules().codes;
+    if (kind == 0) return bench_.ee(kThirdSender);
+    if (kind == 1) return header(codes.cd, Priority::normal, kFirstOrdered, kThirdSender);
+    return header(codes.du, Priority::normal, bench_.rules().everybody, kThirdSender);
   }
 
   Octets said_by_another(std::uint8_t scheduler, std::int64_t kind) const {
@@ -278,13 +311,17 @@ class IsaLasSequenceRun {
   void order(std::uint8_t heir) {
     judge_.expect(bench_.order_transfer(heir), "order_refused", "an order to hand the link over is taken",
                   "refused");
-    acceptor_.order_transfer(heir);
+    acceptor_.order_transfer(heir, bench_.now());
   }
 
   // What it has begun ends before.
   void transfer(const SequenceCommand& command) {
     if (acceptor_.is_standby()) return;
-    if (command.numbers[2] > 1) order(kFirstOrdered);
+    if (command.numbers[2] > 1) {
+      judge_.expect(!bench_.ask_user_request({kOrderOfTransfer}), "order_without_node_taken",
+                    "an order without a node is refused", "it is taken");
+      order(kFirstOrdered);
+    }
     order(kHeirOfIsaLas);
     for (int said = 0; said < kMostBeforeTransfer; ++said) {
       const auto one = next_said();
@@ -299,20 +336,43 @@ class IsaLasSequenceRun {
     const auto header_for_third = [&](std::uint8_t code, std::uint8_t from) {
       return header(code, Priority::normal, kThirdSender, from);
     };
-    if (command.numbers[3] != 0) say(header_for_third(codes.du, IsaBench::kPeer));
+    if (command.numbers[3] == 1) say(header_for_third(codes.du, IsaBench::kPeer));
+    if (command.numbers[3] == 2) say(header_for_third(codes.du, kNoAddress));
     if (command.numbers[0] == 0) return;
     const std::array shown{header_for_third(codes.du, kHeirOfIsaLas), bench_.ee(kHeirOfIsaLas),
                            header_for_third(codes.et, kHeirOfIsaLas),
-                           header_for_third(codes.cd, kHeirOfIsaLas)};
+                           header_for_third(codes.cd, kHeirOfIsaLas),
+                           header(codes.du, Priority::normal, bench_.address(), kHeirOfIsaLas)};
     say(shown.at(static_cast<std::size_t>(command.numbers[1])));
   }
 
-  void resume(std::int64_t version, bool is_ordered) {
+  // What it holds or owes is begun V(MID) later at the soonest.
+  void say_at_once(const Octets& octets) {
+    bench_.wait(bench_.octets(1));
+    acceptor_.hear(octets, bench_.send(octets));
+  }
+
+  void resume(std::int64_t version, bool is_ordered, std::int64_t in) {
     if (!acceptor_.is_standby()) return;
     if (is_ordered) order(kFirstOrdered);
     say(tl(kThirdSender, kLowerScheduler, version));
     (void)next_said();
-    say(tl(bench_.address(), kLowerScheduler, version));
+    if (in == 0) return say(tl(bench_.address(), kLowerScheduler, version));
+    const std::uint8_t code = in == 1 ? bench_.rules().codes.et : bench_.rules().codes.cd;
+    say(header(code, Priority::time_available, bench_.address(), kLowerScheduler));
+    say_at_once(tl(bench_.address(), kLowerScheduler, version));
+  }
+
+  // What was submitted, ordered and out is gone; who begins as the scheduler begins as that again.
+  void lose_supply(std::int64_t octets) {
+    bench_.set_supply(false);
+    judge_.expect(!bench_.next_begins(bench_.now() + bench_.octets(octets)), "says_without_supply",
+                  "nothing without supply", "a DLPDU");
+    if (!acceptor_.may_owe_event(bench_.now())) judge_reports();
+    bench_.user().reports.clear();
+    bench_.set_supply(true);
+    acceptor_ = IsaLasAcceptor(configuration_of_isa_las(bench_), bench_.now());
+    outcomes_ = {};
   }
 
   IsaBench& bench_;
@@ -323,13 +383,14 @@ class IsaLasSequenceRun {
 
 std::vector<PartialSource> isa_las_sequence_details() {
   using link_sources::own;
-  return {{own("V(RR) is 32 octets, VC(UC) the duration and V(ST), items within V(ST) of their time"),
+  return {{own("V(RR) is 32 octets, VC(UC) the duration and a margin, items within V(ST) of their time"),
            {"talks_into_token", "talks_into_transfer", "talks_into_reply", "answers_too_early",
-            "delegation_early", "line_left_silent", "no_reply"}},
+            "delegation_early", "line_left_silent", "no_reply", "preamble_wrong", "says_without_supply"}},
           {own("the scheduler's own data, where it ends before the next item"),
            {"sends_other_data", "own_data_over_due", "data_refused", "data_too_long_taken", "reply_wrong"}},
           {own("TL, and the lower address of two schedulers"),
-           {"speaks_unasked", "transfer_unasked", "transfer_wrong", "no_transfer", "order_refused"}},
+           {"speaks_unasked", "transfer_unasked", "transfer_wrong", "no_transfer", "order_refused",
+            "order_without_node_taken"}},
           {own("what its user is given, and in which order"),
            {"not_delivered", "delivered_otherwise", "delivered_unasked"}}};
 }
@@ -353,9 +414,13 @@ const SequenceRole& isa_las_sequence_role() {
        .catches = {}},
       with_beginnings(isa_las_vocabulary(), states_of_an_isa_las()),
       {{DerivedKind::values, {"schedule_late", "line_left_silent"}},
-       {DerivedKind::values, {"sign_of_life_of_anybody", "line_left_silent"}},
-       {DerivedKind::values, {"first_order_stays", "transfer_wrong"}},
-       {DerivedKind::values, {"order_refused_in_standby", "order_refused"}},
+       {DerivedKind::drawn, {"sign_of_life_of_anybody", "line_left_silent"}},
+       {DerivedKind::drawn, {"first_order_stays", "transfer_wrong"}},
+       {DerivedKind::drawn, {"order_refused_in_standby", "order_refused"}},
+       {DerivedKind::states, {"end_with_a_reason_ignored", "delivered_unasked"}},
+       {DerivedKind::drawn, {"signed_addresses", "line_left_silent"}},
+       {DerivedKind::settings, {"one_octet_of_preamble", "preamble_wrong"}},
+       {DerivedKind::words, {"standby_after_supply", "line_left_silent"}},
        {DerivedKind::faults, {"schedule_not_begun", "line_left_silent"}},
        {DerivedKind::words, {"schedule_early", "delegation_early"}},
        {DerivedKind::words, {"each_event_once", "not_delivered"}},

@@ -44,7 +44,7 @@ IsaSchedule schedule_of_isa_las() {
           .items = {{60 * kOctetAt31250, IsaType::es, 0x21, time_available, 60},
                     {75 * kOctetAt31250, IsaType::et, 0x22, normal, 0},
                     {200 * kOctetAt31250, IsaType::es, 0x23, urgent, 100},
-                    {215 * kOctetAt31250, IsaType::et, 0x21, urgent, 0},
+                    {215 * kOctetAt31250, IsaType::et, 0x21, urgent, 500},
                     {420 * kOctetAt31250, IsaType::et, 0x22, normal, 0},
                     {420 * kOctetAt31250, IsaType::et, 0x21, time_available, 0},
                     {430 * kOctetAt31250, IsaType::es, 0x23, time_available, 300}}};
@@ -61,7 +61,8 @@ std::vector<std::vector<NamedCommand>> states_of_an_isa_las() {
           {{"transfer"}},
           {{"transfer"}, {"resume"}},
           {{"second"}},
-          {{"again"}}};
+          {{"again"}},
+          {{"supply"}}};
 }
 
 SequenceVocabulary isa_las_vocabulary() {
@@ -88,7 +89,9 @@ SequenceVocabulary isa_las_vocabulary() {
             .meaning = "the next holder compels a station that is silent, and returns its token",
             .weight = 2},
            {.word = "third",
-            .meaning = "a third station sends an EE while a token is out, then its holder does",
+            .meaning = "a third station sends an EE (0), a CD (1) or a DU for everybody (2) while a token is "
+                       "out, then its holder returns it",
+            .numbers = {{"kind", 0, 2, 0}},
             .weight = 3},
            {.word = "spoilt",
             .meaning = "the next holder returns its token with faults",
@@ -100,19 +103,22 @@ SequenceVocabulary isa_las_vocabulary() {
             .numbers = {priority_of_isa_las(), {"size", 0, 260, 8, kIsaLasOwnSizes}, {"to", 0, 3, 0}},
             .weight = 6},
            {.word = "transfer",
-            .meaning = "the user orders a TL, the last time to its heir, which is silent (0) or takes over "
-                       "(1) with a DU (0), an EE (1), an ET (2) or a CD (3), after a DU of another (1)",
-            .numbers = {{"taken", 0, 1, 1}, {"kind", 0, 3, 0}, {"orders", 1, 2, 1}, {"other", 0, 1, 0}},
+            .meaning =
+                "the user orders a TL, the last time to its heir, which is silent (0) or takes over "
+                "(1) with a DU for another (0) or the scheduler (4), an EE (1), an ET (2) or a CD (3), "
+                "after a DU of another (1) or what is no DLPDU (2)",
+            .numbers = {{"taken", 0, 1, 1}, {"kind", 0, 4, 0}, {"orders", 1, 2, 1}, {"other", 0, 2, 0}},
             .weight = 4},
            {.word = "second",
-            .meaning = "a scheduler of a higher (0) or a lower (1) address sends an ET (0), an ES (1) or a "
-                       "TL (2) for another while a token is out, which is returned then (1)",
-            .numbers = {{"lower", 0, 1, 1}, {"kind", 0, 2, 0}, {"returned", 0, 1, 0}},
+            .meaning = "a scheduler of a higher (0), a lower (1), the last (2) or the next lower address (3) "
+                       "sends an ET (0), an ES (1) or a TL (2) for another while a token is out, which is "
+                       "returned then (1); before, the user orders a TL (1)",
+            .numbers = {{"from", 0, 3, 1}, {"kind", 0, 2, 0}, {"returned", 0, 1, 0}, {"ordered", 0, 1, 0}},
             .weight = 4},
            {.word = "resume",
-            .meaning = "the link is handed back by a TL, first to another; before, its user orders a TL "
-                       "(1), which is too late",
-            .numbers = {version_of_tl(), {"ordered", 0, 1, 0}},
+            .meaning = "the link is handed back by a TL, first to another; before, its user orders a TL (1), "
+                       "which is too late; it holds a token (1) or owes a reply (2) then",
+            .numbers = {version_of_tl(), {"ordered", 0, 1, 0}, {"in", 0, 2, 0}},
             .weight = 6},
            {.word = "late",
             .meaning = "the next holder returns its token so many octets before the wait for it is over",
@@ -123,22 +129,40 @@ SequenceVocabulary isa_las_vocabulary() {
             .numbers = {{"octets", 1, 8, 1}},
             .weight = 4},
            {.word = "ask",
-            .meaning = "the next holder compels the scheduler, and returns its token after the reply",
-            .numbers = {priority_of_isa_las()},
+            .meaning =
+                "the next holder compels the scheduler, and after the reply returns its token (1) or is "
+                "silent (0)",
+            .numbers = {priority_of_isa_las(), {"returned", 0, 1, 1}},
             .weight = 4},
            {.word = "prepare",
             .meaning = "the scheduler's user submits data for a CD",
             .numbers = {priority_of_isa_las(), {"size", 0, 64, 8, kIsaLasSizes}},
             .weight = 3},
            {.word = "request",
-            .meaning = "the scheduler's user submits a CD; the station replies (0), is silent (1), sends "
-                       "a DU (2), another replies (3), the reply is no DLPDU (4)",
-            .numbers = {priority_of_isa_las(), {"outcome", 0, 4, 0}},
+            .meaning =
+                "the scheduler's user submits a CD; the station replies (0), is silent (1), sends a DU "
+                "(2), another replies (3), the reply is no DLPDU (4), ends after V(RR) (5), is urgent "
+                "(6), there is a TL in its place (7)",
+            .numbers = {priority_of_isa_las(), {"outcome", 0, 7, 0}},
             .weight = 5},
            {.word = "again",
             .meaning = "a TL for the scheduler while it is that and a token is out",
             .numbers = {version_of_tl()},
-            .weight = 3}},
+            .weight = 3},
+           {.word = "end",
+            .meaning =
+                "the next holder returns its token with this reason to the scheduler (0) or another (1)",
+            .numbers = {{"reason", 0, 2, 0}, {"to", 0, 1, 0}},
+            .weight = 3},
+           {.word = "pause",
+            .meaning = "so many octet durations pass, or until the scheduler has said something",
+            .numbers = {{"octets", 1, 100, 20}},
+            .weight = 3},
+           {.word = "supply",
+            .meaning = "the supply goes, and comes after so many octet durations",
+            .numbers = {{"octets", 1, 100, 20}},
+            .weight = 2,
+            .is_loss = true}},
       .unit = "octet",
       .levels_per_unit = kFlipsOfAnOctet,
       .settings = sequence_settings(fieldbus_dll::kIsaTable, &as_made, kFixedOfLink, kBoundsOfIsaLas),

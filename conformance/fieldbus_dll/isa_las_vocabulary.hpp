@@ -29,13 +29,25 @@ enum class IsaLasWord : std::uint8_t {
   ask,
   prepare,
   request,
-  again
+  again,
+  end,
+  pause,
+  supply
 };
 
 // Who gets what a holder sends.
 enum class HolderData : std::uint8_t { for_scheduler, for_another, for_everybody, reply_to_scheduler };
 // What comes after a CD of the scheduler.
-enum class PeerAnswer : std::uint8_t { replies, is_silent, sends_data, another_replies, is_none };
+enum class PeerAnswer : std::uint8_t {
+  replies,
+  is_silent,
+  sends_data,
+  another_replies,
+  is_none,
+  replies_late,
+  replies_urgently,
+  hands_over
+};
 
 fieldbus_dll::IsaSchedule schedule_of_isa_las();
 SequenceVocabulary isa_las_vocabulary();

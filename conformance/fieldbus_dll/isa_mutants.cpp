@@ -334,6 +334,27 @@ std::vector<IsaRow> isa_las_rows() {
        mutant<SchedulerNeverReplies>()},
       {"sign_of_life_of_anybody", "", "takes whatever comes after its TL for the sign of life of its heir",
        mutant<SignOfLifeOfAnybody>()},
+      {"end_with_a_reason_ignored", "", "takes no EE with another reason than 0",
+       mutant<EndWithAReasonIgnored>()},
+      {"signed_addresses", "", "takes addresses above 7F for lower ones", mutant<SignedAddresses>()},
+      {"one_octet_of_preamble", "", "sends an octet of preamble, whatever its link has",
+       with_rules<IsaLas>([](IsaRules& rules) { rules.link.preamble_octets = 1; })},
+      {"standby_after_supply", "", "is in standby after each supply but the first",
+       mutant<StandbyAfterSupply>()},
+      {"sixteen_items", "", "has room for 16 items",
+       mutant<OtherSchedule>(+[](fieldbus_dll::IsaSchedule& schedule) {
+         schedule.items.resize(std::min<std::size_t>(schedule.items.size(), 16));
+       })},
+      {"period_of_32_bits", "", "counts its period in 32 bits of nanoseconds",
+       mutant<OtherSchedule>(+[](fieldbus_dll::IsaSchedule& schedule) {
+         schedule.period %= 0x1'0000'0000 * kernel::kNanosecond;
+       })},
+      {"clock_of_32_bits", "", "runs no schedule after 2^32 microseconds", mutant<ClockOf32Bits>()},
+      {"no_data_after_its_schedule", "", "sends nothing of its user's when its schedule is over",
+       mutant<NothingAfterItsSchedule>(true)},
+      {"no_schedule_after_its_schedule", "", "takes no TL when its schedule is over",
+       mutant<NothingAfterItsSchedule>(false)},
+      {"sign_of_life_first", "", "shows itself before what is due", mutant<SignOfLifeFirst>()},
   };
 }
 

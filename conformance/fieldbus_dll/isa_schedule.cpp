@@ -87,6 +87,55 @@ void expect_without_wait(IsaScene& scene) {
                 "next_too_late");
 }
 
+// More than an octet counts, in a period that is longer than 2^32 nanoseconds.
+constexpr unsigned kManyItems = 300;
+IsaSchedule many_items() {
+  IsaSchedule schedule{.version = 1, .period = 5 * kernel::kSecond, .items = {}};
+  for (unsigned n = 0; n < kManyItems; ++n) {
+    const auto least = static_cast<Priority>(1 + n % 3);
+    schedule.items.push_back({(20 + 50 * std::int64_t{n}) * kOctetAt31250,
+                              n % 2 == 0 ? IsaType::et : IsaType::es, static_cast<std::uint8_t>(0x21 + n % 3),
+                              least, static_cast<std::uint16_t>(n + 1)});
+  }
+  return schedule;
+}
+
+void expect_one_of_many(IsaScene& scene) {
+  const IsaSchedule schedule = many_items();
+  const IsaScheduleItem& item = schedule.items.at(scene.turn % kManyItems);
+  const kernel::Time due = kernel::kStart + scene.turn / kManyItems * schedule.period + item.at;
+  scene.answer = expect_next(scene.bench, scene.judge, due + 2 * scene.bench.slot(), "delegation_missing",
+                             "the next item of the schedule");
+  const Octets right = octets_of_item(scene.bench, item);
+  scene.judge.expect(scene.answer.octets == right, "delegation_wrong", [&] {
+    return Mismatch{{fmt::format("{:02X}", fmt::join(right, " "))}, scene.answer.text(), scene.answer.begin};
+  });
+  expect_begins(scene.judge, scene.answer, due - scene.bench.slot(), "delegation_early",
+                due + scene.bench.slot(), "delegation_late");
+}
+
+// The third begins after more than 2^32 microseconds.
+IsaSchedule one_item_an_hour() {
+  return {.version = 1,
+          .period = 3'600 * kernel::kSecond,
+          .items = {{20 * kOctetAt31250, IsaType::et, kHolderInSchedule, Priority::normal, 0}}};
+}
+
+void expect_token_of_hour(IsaScene& scene) {
+  const kernel::Time due =
+      kernel::kStart + std::int64_t{scene.turn} * 3'600 * kernel::kSecond + 20 * kOctetAt31250;
+  scene.answer = expect_next(scene.bench, scene.judge, due + 2 * scene.bench.slot(), "delegation_missing",
+                             "the token of this hour");
+  expect_begins(scene.judge, scene.answer, due - scene.bench.slot(), "delegation_early",
+                due + scene.bench.slot(), "delegation_late");
+}
+
+IsaSchedule one_item_once() {
+  return {.version = 1,
+          .period = {},
+          .items = {{60 * kOctetAt31250, IsaType::et, kHolderInSchedule, Priority::normal, 0}}};
+}
+
 kernel::Time due_in_period(unsigned period) {
   return kernel::kStart + (std::int64_t{period} * kOctetsOfPeriod + kItemInPeriod) * kOctetAt31250;
 }
@@ -104,7 +153,7 @@ void expect_token_of_period(IsaScene& scene, unsigned period) {
 
 void expect_own_data(IsaScene& scene) {
   IsaBench& bench = scene.bench;
-  const DrivenDlpdu du = expect_next(bench, scene.judge, scene.sent + bench.octets(60), "own_data_not_sent",
+  const DrivenDlpdu du = expect_next(bench, scene.judge, bench.now() + bench.octets(60), "own_data_not_sent",
                                      "a DU of the scheduler's user");
   scene.judge.expect(is_type(du, bench.rules().codes.du) && du.rest() == scene.submitted.back(),
                      "own_data_not_sent",
@@ -184,6 +233,58 @@ std::vector<IsaCase> isa_schedule_cases() {
                                [](IsaScene& scene) { expect_token_of_period(scene, 2 * scene.round + 1); }),
             returned, own_data}},
           {.schedule = one_item_a_period()}),
+      on_chart(
+          must_in_time("fieldbus_dll/isa_las/schedule/many_items_of_a_long_period", "ISA-29",
+                       "The scheduler delegates its token in the order and at the times of its schedule.",
+                       isa_paper("the link active scheduler passes the delegated token in scheduled order"),
+                       {{"sixteen_items", "delegation_missing"}, {"period_of_32_bits", "delegation_early"}},
+                       {{own("within one V(ST) of its time"),
+                         {"delegation_missing", "delegation_early", "delegation_late"}}}),
+          {{},
+           {repeat({kManyItems + 3, kManyItems + 3},
+                   {expected<IsaScene>("the tokens of a schedule of 300 items, and three of its next "
+                                       "period, which begins after 5 s, each within V(ST) of its time",
+                                       expect_one_of_many),
+                    stimulus<IsaScene>(
+                        "its holder returns it at once",
+                        [](IsaScene& scene) { scene.reply(scene.bench.ee(scene.answer.octet(1))); })})}},
+          {.schedule = many_items()}),
+      on_chart(
+          must_in_time("fieldbus_dll/isa_las/schedule/goes_round_for_hours", "ISA-29",
+                       "The scheduler delegates its token in the order and at the times of its schedule.",
+                       isa_paper("the link active scheduler passes the delegated token in scheduled order"),
+                       {{"clock_of_32_bits", "delegation_missing"}},
+                       {{own("within one V(ST) of its time"),
+                         {"delegation_missing", "delegation_early", "delegation_late"}}}),
+          {{},
+           {repeat({3, 3},
+                   {expected<IsaScene>("an ET each hour, within V(ST) of its time", expect_token_of_hour),
+                    returned})}},
+          {.schedule = one_item_an_hour()}),
+      on_chart(
+          must_case("fieldbus_dll/isa_las/schedule/what_comes_after_its_end", "ISA-29",
+                    "When its schedule is over, the scheduler sends what its user submits, and a TL begins "
+                    "it again.",
+                    own("the end of a schedule"),
+                    {{"no_data_after_its_schedule", "own_data_not_sent"},
+                     {"no_schedule_after_its_schedule", "schedule_not_run"}}),
+          {{},
+           {delegated("the token of the schedule"), returned, wait(300), submit({Priority::normal}, kShort),
+            own_data, wait(300),
+            send("a TL to the station",
+                 [](IsaScene& scene) {
+                   return Octets{scene.bench.rules().codes.tl, scene.bench.address(), 0x0F, 0, 1};
+                 }),
+            expected<IsaScene>("the token of its schedule within 80 octet durations",
+                               [](IsaScene& scene) {
+                                 const kernel::Time last = scene.sent + scene.bench.octets(80);
+                                 auto one = scene.bench.next(last);
+                                 while (one && !is_type(*one, scene.bench.rules().codes.et))
+                                   one = scene.bench.next(last);
+                                 scene.judge.expect(one.has_value(), "schedule_not_run",
+                                                    "the ET of its schedule", "none");
+                               })}},
+          {.schedule = one_item_once()}),
   };
 }
 

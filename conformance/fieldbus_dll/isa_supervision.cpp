@@ -82,7 +82,7 @@ std::vector<IsaCase> isa_supervision_cases() {
       [](const IsaScene& scene) { return scene.sent + scene.bench.least_gap(); }, one_slot);
   using link_sources::isa_paper;
   using link_sources::own;
-  const PartialSource times{own("V(RR) is 32 octets, VC(UC) the duration and V(ST)"),
+  const PartialSource times{own("V(RR) is 32 octets, VC(UC) the duration and a margin"),
                             {"reclaimed_early", "reclaimed_late"}};
   return {
       on_chart(

@@ -30,6 +30,10 @@ IsaSchedule late_items() {
                     {130 * kOctetAt31250, IsaType::es, 0x22, Priority::normal, 40}}};
 }
 
+IsaSchedule at_once() {
+  return {.version = 1, .period = {}, .items = {{{}, IsaType::et, kServed, Priority::normal, 0}}};
+}
+
 bool is_scheduling(const IsaBench& bench, const DrivenDlpdu& dlpdu) {
   const auto& codes = bench.rules().codes;
   return is_type(dlpdu, codes.et) || is_type(dlpdu, codes.es) || is_type(dlpdu, codes.tl);
@@ -134,6 +138,20 @@ std::vector<IsaCase> isa_transfer_cases() {
                 "a DLPDU within V(RR), then the ET and the ES of its schedule, due after 60 and 130 octets",
                 expect_taken)}},
           {.schedule = late_items(), .is_scheduler = false}),
+      on_chart(
+          must_case("fieldbus_dll/isa_las/transfer/what_is_due_comes_first", "ISA-35",
+                    "Who was handed the link and has an item that is due, sends that.",
+                    own("what comes first on a free link"), {{"sign_of_life_first", "sign_of_life_unasked"}}),
+          {{},
+           {wait(300), transfer_to_station,
+            expected<IsaScene>("the item that is due at once",
+                               [](IsaScene& scene) {
+                                 const DrivenDlpdu one =
+                                     expect_next(scene.bench, scene.judge, "not_taken", "the ET");
+                                 scene.judge.expect(is_type(one, scene.bench.rules().codes.et),
+                                                    "sign_of_life_unasked", "the ET that is due", one.text());
+                               })}},
+          {.schedule = at_once(), .is_scheduler = false}),
       on_chart(
           must_case("fieldbus_dll/isa_las/transfer/a_wrong_one_is_none", "ISA-35",
                     "A TL with a wrong check or for another makes a link master no scheduler.",

@@ -56,6 +56,7 @@ void FfStation::wire(segment::Port& line, FfUser& user) {
 
 bool FfStation::start(kernel::Time now) {
   if (are_impossible()) return false;
+  line_.on_supply(now);
   set_link_time(0, now);
   enter(FfState::offline);
   return true;

@@ -39,7 +39,8 @@ void IsaDle::wire(segment::Port& line, IsaUser& user) {
   user_ = &user;
 }
 
-bool IsaDle::start(kernel::Time) {
+bool IsaDle::start(kernel::Time now) {
+  line_.on_supply(now);
   is_stopped_ = are_impossible();
   return !is_stopped_;
 }

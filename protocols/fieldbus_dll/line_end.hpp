@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -39,6 +40,8 @@ class LineEnd {
 
   // The frames that a reception brought, whole and checked; none of one that began while this station drove.
   std::vector<Arrived> receive(const line::Waveform& reception);
+  // Nobody knows what was on the line before: silence counts from here.
+  void on_supply(kernel::Time now) { heard_until_ = std::max(heard_until_, now); }
   void on_activity(bool begins, kernel::Time now);
 
   bool hears_activity() const { return hears_activity_; }
