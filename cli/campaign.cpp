@@ -37,7 +37,7 @@ constexpr std::uint64_t kMostWorkers = 1024;
 }
 
 campaign::Manifest manifest_for(const Session& session, const CampaignPlan& plan) {
-  return {.suite_version = suite_version(session.catalogue),
+  return {.suite_version = suite_version(session.catalogue()),
           .plan_hash = plan.hash(),
           .inputs = plan.inputs(),
           .jobs = plan.count(),
@@ -75,12 +75,12 @@ Opened open_campaign(const Session& session) {
   if (settings.is_set("resume")) {
     campaign::Folder folder = campaign::Folder::open(settings.text("resume"));
     CampaignPlan plan(session.operands.empty() ? folder.plan() : fs::path(session.operands.front()),
-                      session.catalogue);
+                      session.catalogue());
     check_same_campaign(folder, manifest_for(session, plan));
     return {std::move(plan), std::move(folder)};
   }
   const fs::path file = session.operands.front();
-  CampaignPlan plan(file, session.catalogue);
+  CampaignPlan plan(file, session.catalogue());
   const campaign::Manifest manifest = manifest_for(session, plan);
   campaign::Folder folder =
       settings.is_set("out")
@@ -208,7 +208,7 @@ void check_call(const Session& session) {
 
 int run_campaign(Session& session) {
   const std::string program =
-      fmt::format("fieldproof {} ({}, {})", suite_version(session.catalogue), build_type(), compiler());
+      fmt::format("fieldproof {} ({}, {})", suite_version(session.catalogue()), build_type(), compiler());
   const auto ranks = campaign::Ranks::of_this_process(fs::read_symlink("/proc/self/exe"));
   const bool is_one_each = ranks && session.settings.origin("workers") == Origin::fallback;
   const auto workers =

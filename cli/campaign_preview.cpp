@@ -56,7 +56,7 @@ std::string bad_line(const campaign::Outcome& outcome) {
 }  // namespace
 
 int estimate_campaign(Session& session, std::size_t slots) {
-  const CampaignPlan plan(session.operands.front(), session.catalogue);
+  const CampaignPlan plan(session.operands.front(), session.catalogue());
   const Interruption interruption(session.settings.duration("max-time"));
   int code = kAllAsExpected;
   double seconds = 0;

@@ -229,7 +229,7 @@ StoredEntry::StoredEntry(const CaseFile& stored, const Session& session) {
   if (stored.is_quiet) {
     quiet_ = std::make_unique<conformance::Catalogue>(make_suites(without_stresses(all_disturbances())));
   }
-  entry_ = &(quiet_ ? *quiet_ : session.catalogue).at(stored.id);
+  entry_ = &(quiet_ ? *quiet_ : session.catalogue()).at(stored.id);
 }
 
 CaseFile load_case(const std::filesystem::path& file, const conformance::Catalogue& catalogue) {

@@ -36,12 +36,13 @@ std::string passed_text(const conformance::SequenceSearchResult& result, std::ui
 SequenceFile searched_role(const Session& session) {
   const Settings& settings = session.settings;
   SequenceFile target;
-  std::tie(target.suite, target.role) = sequence_role_at(session.operands.front(), session.catalogue);
+  std::tie(target.suite, target.role) = sequence_role_at(session.operands.front(), session.catalogue());
   target.setup.seed = settings.number("seed", 0, std::numeric_limits<std::uint64_t>::max());
   target.setup.limits = limits_from(settings);
   if (settings.is_set("pics")) {
-    target.setup.pics = load_pics(settings.text("pics"), session.catalogue.pics_items());
-    expect_items_of({role_path(*target.role)}, *target.setup.pics, settings.text("pics"), session.catalogue);
+    target.setup.pics = load_pics(settings.text("pics"), session.catalogue().pics_items());
+    expect_items_of({role_path(*target.role)}, *target.setup.pics, settings.text("pics"),
+                    session.catalogue());
   }
   assign_implementations(session, target);
   target.suite->check(target.role->test_case, target.setup);

@@ -154,7 +154,7 @@ void Doctor::examine_line(const std::string& uri) {
 // a matter of `run`. A box at a real line moves real things: it is not asked for one.
 void Doctor::try_a_case(const conformance::Assignment& one) {
   const std::vector<std::string> cases_of_role{fmt::format("{}/{}/**", role_.protocol, role_.role)};
-  const std::vector<conformance::Entry> entries = session_.catalogue.select(cases_of_role);
+  const std::vector<conformance::Entry> entries = session_.catalogue().select(cases_of_role);
   conformance::Setup setup;
   setup.implementations = {one};
   setup.volume = conformance::Volume::quick;
@@ -209,7 +209,7 @@ iut::RoleName role_of(const conformance::Assignment& assignment) {
 
 int doctor(Session& session) {
   const auto implementations =
-      parse_implementations(session.settings.list("iut"), session.catalogue, session.catalogue.entries());
+      parse_implementations(session.settings.list("iut"), session.catalogue(), session.catalogue().entries());
   Doctor(session, {}).examine_machine();
   for (const conformance::Assignment& one : implementations) {
     Doctor(session, role_of(one)).examine(one);

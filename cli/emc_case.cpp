@@ -48,7 +48,7 @@ const ProtocolEntry& protocol_from(const config::Value& value) {
 }
 
 const conformance::Suite& suite_of(const config::Value& protocol, const Session& session) {
-  for (const auto& suite : session.catalogue.suites())
+  for (const auto& suite : session.catalogue().suites())
     if (suite->protocol() == protocol.as_string()) return *suite;
   config::fail(protocol, "the protocol has no suite, so nobody can be put into its network");
 }

@@ -34,11 +34,11 @@ std::string catches_text(const conformance::Entry& entry) {
 }  // namespace
 
 int explain(Session& session) {
-  if (const auto text = explained_numbers(session.catalogue, session.operands.front())) {
+  if (const auto text = explained_numbers(session.catalogue(), session.operands.front())) {
     session.terminal.print(*text);
     return 0;
   }
-  const conformance::Entry& entry = session.catalogue.at(session.operands.front());
+  const conformance::Entry& entry = session.catalogue().at(session.operands.front());
   const conformance::TestCase& test_case = *entry.test_case;
   std::string text = fmt::format("{}\n", test_case.id);
   const auto field = [&text](const char* label, const std::string& value) {

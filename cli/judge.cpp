@@ -41,12 +41,12 @@ std::string change_text(const judge::CaseResult& before, const judge::CaseResult
 std::optional<judge::CaseResult> judged_again(Session& session, const judge::CaseResult& before,
                                               const std::filesystem::path& file, std::size_t& damaged) {
   try {
-    CaseFile stored = load_case(file, session.catalogue);
+    CaseFile stored = load_case(file, session.catalogue());
     if (const std::string why = reason_not_judgeable(stored); !why.empty()) {
       session.terminal.log(fmt::format("{} is not judged again: {}", before.id, why));
       return std::nullopt;
     }
-    const conformance::Entry& entry = session.catalogue.at(before.id);
+    const conformance::Entry& entry = session.catalogue().at(before.id);
     stored.setup.playback_file = stored.playback.string();
     return conformance::run_case(entry, stored.setup).outcome.result;
   } catch (const kernel::Error& error) {

@@ -72,7 +72,7 @@ Row row_of(const judge::PicsItem& item) {
 // The items of one role, with what is taken where a PICS does not answer.
 std::vector<Row> pics_rows_of(const Role& role, const Session& session) {
   std::vector<Row> rows;
-  const auto& of_protocol = session.catalogue.suite(role.protocol).role_rows();
+  const auto& of_protocol = session.catalogue().suite(role.protocol).role_rows();
   const auto& of_role = *std::ranges::find(of_protocol, role.name, &conformance::RoleRow::name);
   if (of_role.pics_items.empty()) session.terminal.log(fmt::format("{} has no items of a PICS", role.path()));
   const auto& usual = of_role.usual_answers.items();
@@ -135,10 +135,10 @@ void write_case_lists(const Session& session, std::span<const conformance::Entry
 std::vector<Row> case_rows_of(const Session& session) {
   std::vector<Row> rows;
   conformance::Setup setup;
-  const std::vector<conformance::Entry> selected = session.catalogue.select(session.operands);
+  const std::vector<conformance::Entry> selected = session.catalogue().select(session.operands);
   if (session.settings.is_set("pics")) {
-    setup.pics = load_pics(session.settings.text("pics"), session.catalogue.pics_items());
-    expect_items_of(roles_of(selected), *setup.pics, session.settings.text("pics"), session.catalogue);
+    setup.pics = load_pics(session.settings.text("pics"), session.catalogue().pics_items());
+    expect_items_of(roles_of(selected), *setup.pics, session.settings.text("pics"), session.catalogue());
   }
   const std::vector<conformance::Entry> entries = shard_of(session.settings, selected);
   for (const conformance::Entry& entry : entries) rows.push_back(row_of(entry, setup));
@@ -170,17 +170,17 @@ std::vector<Row> rows_of(Session& session) {
   std::vector<Row> rows;
   const bool is_single = session.operands.size() == 1;
   if (is_single && session.operands.front() == "protocols") {
-    for (const auto& suite : session.catalogue.suites()) rows.push_back(row_of(*suite));
+    for (const auto& suite : session.catalogue().suites()) rows.push_back(row_of(*suite));
     for (const ProtocolEntry& protocol : protocols())
       if (protocol.suite == nullptr && protocol.planner.plan != nullptr)
         rows.push_back(row_of_plans(protocol));
     return rows;
   }
   if (is_single && session.operands.front() == "mutants") {
-    for (const conformance::MutantEntry& entry : session.catalogue.mutants()) rows.push_back(row_of(entry));
+    for (const conformance::MutantEntry& entry : session.catalogue().mutants()) rows.push_back(row_of(entry));
     return rows;
   }
-  const std::vector<judge::PicsItem> items = session.catalogue.pics_items();
+  const std::vector<judge::PicsItem> items = session.catalogue().pics_items();
   if (is_single && session.operands.front() == "pics") {
     for (const judge::PicsItem& item : items) rows.push_back(row_of(item));
     return rows;

@@ -51,7 +51,7 @@ int matrix_of_cases(Session& session, const Interruption& interruption) {
         fmt::format("the matrix of cases is one of a protocol: write matrix {}, or matrix {} --sequences",
                     protocol.substr(0, end), protocol));
   }
-  const conformance::Suite& suite = session.catalogue.suite(protocol);
+  const conformance::Suite& suite = session.catalogue().suite(protocol);
   conformance::MatrixPlan plan;
   plan.seed = seed_of(session);
   plan.jobs = jobs_from(session.settings);
@@ -76,8 +76,8 @@ using RoleOfSuite = std::pair<const conformance::Suite*, const conformance::Sequ
 // One role, or all of a protocol.
 std::vector<RoleOfSuite> roles_at(const Session& session) {
   const std::string& path = session.operands.front();
-  if (path.find('/') != std::string::npos) return {sequence_role_at(path, session.catalogue)};
-  const conformance::Suite& suite = session.catalogue.suite(path);
+  if (path.find('/') != std::string::npos) return {sequence_role_at(path, session.catalogue())};
+  const conformance::Suite& suite = session.catalogue().suite(path);
   std::vector<RoleOfSuite> roles;
   for (const conformance::SequenceRole& role : suite.sequence_roles()) roles.emplace_back(&suite, &role);
   if (roles.empty())

@@ -43,8 +43,10 @@ conformance::NetworkRequest network_request(const Session& session, const Protoc
 
 std::vector<conformance::Assignment> network_implementations(const Session& session,
                                                              const ProtocolEntry& entry) {
-  const auto entries = session.catalogue.select(std::vector{std::string(entry.name) + "/**"});
-  return parse_implementations(session.settings.list("iut"), session.catalogue, entries, kAnyPosition);
+  const std::vector<std::string> typed = session.settings.list("iut");
+  if (typed.empty()) return {};
+  const auto entries = session.catalogue().select(std::vector{std::string(entry.name) + "/**"});
+  return parse_implementations(typed, session.catalogue(), entries, kAnyPosition);
 }
 
 std::unique_ptr<conformance::PlannedNetwork> plan_network(const Session& session,

@@ -30,8 +30,7 @@ int serve(const Command& command, const std::vector<std::string>& arguments, Ter
   }
   if (find_option("quiet", verb->name) != nullptr) terminal.set_quiet(settings.is_set("quiet"));
   if (find_option("json", verb->name) != nullptr && settings.is_set("json")) date_of_document();
-  const conformance::Catalogue catalogue(make_suites(all_disturbances()));
-  Session session{catalogue, settings, terminal, command.operands, arguments};
+  Session session{settings, terminal, command.operands, arguments};
   return verb->serve(session);
 }
 
@@ -41,6 +40,13 @@ int code_after_output(int code, const Terminal& terminal) {
 }
 
 }  // namespace
+
+const conformance::Catalogue& Session::catalogue() const {
+  std::call_once(is_made_, [&] {
+    catalogue_ = std::make_unique<const conformance::Catalogue>(make_suites(all_disturbances()));
+  });
+  return *catalogue_;
+}
 
 int run_program(int argc, const char* const* argv, std::span<const ProtocolEntry> protocols) {
   use_protocols(protocols);

@@ -45,14 +45,14 @@ int replay(Session& session) {
   check_exports(session.settings);
   if (is_sequence_file(session.operands.front())) return replay_sequence(session);
   if (has_schema(session.operands.front(), kEmcCaseSchema)) return replay_emc(session);
-  CaseFile stored = load_case(session.operands.front(), session.catalogue);
+  CaseFile stored = load_case(session.operands.front(), session.catalogue());
   stored.setup.limits = limits_from(session.settings);
   const StoredEntry stored_entry(stored, session);
   const conformance::Entry& entry = *stored_entry;
   const bool is_other = session.settings.origin("iut") != Origin::fallback;
   if (is_other) {
     stored.setup.implementations =
-        parse_implementations(session.settings.list("iut"), session.catalogue, std::span(&entry, 1));
+        parse_implementations(session.settings.list("iut"), session.catalogue(), std::span(&entry, 1));
   }
   conformance::check_setup(std::span(&entry, 1), stored.setup);
   reports::Run run{identity_for(session, stored), {}};

@@ -55,7 +55,7 @@ void write_page(const Session& session, const std::optional<JoinedRun>& only,
                 std::shared_ptr<const reports::History> history) {
   const std::string page = session.settings.text("html");
   reports::PageContent content;
-  content.catalogue = page_catalogue(session.catalogue);
+  content.catalogue = page_catalogue(session.catalogue());
   if (only) content.runs.push_back(only->run);
   for (const std::string& operand : session.operands) {
     if (const std::string file = document_of(operand); !file.empty()) {

@@ -41,7 +41,7 @@ std::string failed_directory(Session& session) {
   if (given.empty()) return "runs";
   if (std::filesystem::is_directory(given)) return given;
   try {
-    session.catalogue.select(std::array{given});
+    session.catalogue().select(std::array{given});
   } catch (const kernel::Error& refused) {
     session.settings.refuse("failed",
                             fmt::format("'{}' is no folder, and as a selector: {}", given, refused.what()));
@@ -65,9 +65,9 @@ std::vector<conformance::Entry> failed_entries(Session& session) {
   // The part of a whole that the stored run was is what it has failed in.
   session.settings.reset("shard");
   if (failed.empty()) return {};
-  std::vector<conformance::Entry> entries = session.catalogue.select(failed);
+  std::vector<conformance::Entry> entries = session.catalogue().select(failed);
   if (!session.operands.empty()) {
-    const std::vector<conformance::Entry> chosen = session.catalogue.select(session.operands);
+    const std::vector<conformance::Entry> chosen = session.catalogue().select(session.operands);
     std::erase_if(entries, [&](const conformance::Entry& entry) {
       return std::none_of(chosen.begin(), chosen.end(), [&](const conformance::Entry& other) {
         return other.test_case == entry.test_case;
@@ -95,7 +95,7 @@ unsigned jobs_of(const Settings& settings) {
 
 std::optional<Baseline> baseline_from(const Session& session) {
   if (!session.settings.is_set("baseline")) return std::nullopt;
-  return Baseline::load(session.settings.text("baseline"), session.catalogue, today_utc());
+  return Baseline::load(session.settings.text("baseline"), session.catalogue(), today_utc());
 }
 
 struct Prepared {
@@ -125,12 +125,12 @@ Prepared prepare_resumed(Session& session) {
   take_over_configuration(session, directory);
   session.operands = stored.run.identity.selectors;
   const std::vector<conformance::Entry> selected =
-      shard_of(session.settings, session.catalogue.select(session.operands));
+      shard_of(session.settings, session.catalogue().select(session.operands));
   if (selected.size() != stored.run.identity.selected) {
     refuse_resume(directory, fmt::format("it selected {} cases, and its selectors are {} now",
                                          stored.run.identity.selected, selected.size()));
   }
-  Prepared prepared{setup_from(session.settings, session.catalogue, selected), baseline_from(session),
+  Prepared prepared{setup_from(session.settings, session.catalogue(), selected), baseline_from(session),
                     nullptr};
   const reports::RunIdentity now = identity_of(session, prepared.setup, selected.size());
   check_same_run(directory, stored.run.identity, now);
@@ -153,8 +153,8 @@ Prepared prepare(Session& session) {
   // A stored run that was a part of a whole has failed in this part only.
   const std::vector<conformance::Entry> selected =
       is_failed_only ? failed_entries(session)
-                     : shard_of(session.settings, session.catalogue.select(session.operands));
-  Prepared prepared{setup_from(session.settings, session.catalogue, selected), baseline_from(session),
+                     : shard_of(session.settings, session.catalogue().select(session.operands));
+  Prepared prepared{setup_from(session.settings, session.catalogue(), selected), baseline_from(session),
                     nullptr};
   reports::RunIdentity identity = identity_of(session, prepared.setup, selected.size());
   prepared.book =
@@ -219,7 +219,7 @@ class Judging {
 // The page of a run stands in its directory, and is read from there like any other; so are the copies.
 void write_reports(const Session& session, const RunBook& book, const reports::OutcomeRules& rules) {
   reports::PageContent content;
-  content.catalogue = page_catalogue(session.catalogue);
+  content.catalogue = page_catalogue(session.catalogue());
   content.runs.push_back(reports::page_run(book.directory()));
   const std::string page = reports::html_page(content);
   book.directory().write("report.html", page);

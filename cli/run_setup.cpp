@@ -129,13 +129,13 @@ reports::RunIdentity identity_of(const Session& session, const conformance::Setu
                                  std::size_t selected) {
   reports::RunIdentity identity;
   identity.tool_version = tool_version();
-  identity.suite_version = suite_version(session.catalogue);
+  identity.suite_version = suite_version(session.catalogue());
   identity.seed = setup.seed;
   identity.volume = conformance::name(setup.volume);
   identity.plan_hash = file_hash(setup.plan_file);
   identity.network_hash = file_hash(setup.network_file);
   if (setup.pics) identity.pics_hash = hash_text(pics_text(*setup.pics));
-  for (const auto& suite : session.catalogue.suites()) {
+  for (const auto& suite : session.catalogue().suites()) {
     for (std::string& caveat : suite->caveats(setup)) {
       if (std::ranges::find(identity.caveats, caveat) == identity.caveats.end())
         identity.caveats.push_back(std::move(caveat));

@@ -124,7 +124,7 @@ std::vector<std::string> near_to(const std::string& wanted, const std::vector<Na
 }  // namespace
 
 int schema(Session& session) {
-  const std::vector<NamedText> all = named_schemas(session.catalogue);
+  const std::vector<NamedText> all = named_schemas(session.catalogue());
   if (session.operands.empty()) {
     for (const NamedText& one : all) session.terminal.print(one.name + "\n");
     return 0;

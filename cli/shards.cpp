@@ -131,7 +131,7 @@ void check_parts(const std::vector<Part>& parts) {
 
 // Each result at the place that its case has in the whole selection.
 std::vector<judge::CaseResult> cases_in_order(const Session& session, const std::vector<Part>& parts) {
-  const std::string now = suite_version(session.catalogue);
+  const std::string now = suite_version(session.catalogue());
   const Part& first = parts.front();
   if (first.identity().suite_version != now) {
     refuse(first,
@@ -139,7 +139,7 @@ std::vector<judge::CaseResult> cases_in_order(const Session& session, const std:
                "the suite was {}, and this program has {}; join the parts with the program that ran them",
                kernel::escaped_line(first.identity().suite_version), now));
   }
-  const auto selected = session.catalogue.select(first.identity().selectors);
+  const auto selected = session.catalogue().select(first.identity().selectors);
   std::map<std::string, std::size_t> places;
   for (const conformance::Entry& entry : selected) places.emplace(entry.test_case->id, places.size());
   std::map<std::size_t, judge::CaseResult> cases;

@@ -54,9 +54,9 @@ int shrink(Session& session) {
   const std::string& file = session.operands.front();
   const std::string path = smaller_path(session);
   if (is_sequence_file(file))
-    return shrink_sequence(session, load_sequence_file(file, session.catalogue), path);
+    return shrink_sequence(session, load_sequence_file(file, session.catalogue()), path);
   if (has_schema(file, kEmcCaseSchema)) return shrink_emc(session, path);
-  CaseFile stored = load_case(file, session.catalogue);
+  CaseFile stored = load_case(file, session.catalogue());
   stored.setup.limits = limits_from(session.settings);
   reports::check_writable(path);
   return shrink_bursts(session, stored, path);

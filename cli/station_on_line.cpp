@@ -163,7 +163,7 @@ void play_on_line(Session& session, const Role& role, const std::string& uri) {
   }
   judge::Pics pics;
   if (session.settings.is_set("pics"))
-    pics = load_pics(session.settings.text("pics"), session.catalogue.pics_items());
+    pics = load_pics(session.settings.text("pics"), session.catalogue().pics_items());
   LinePlayer player(line, role.uart, {}, make_station);
   player.begin_alone(role.alone(pics));
   player.play(-1);

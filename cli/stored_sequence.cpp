@@ -66,8 +66,8 @@ int code_of(const judge::CaseResult& result) {
 
 void assign_implementations(const Session& session, SequenceFile& file) {
   const std::vector<std::string> cases_of_role{role_path(*file.role) + "/**"};
-  file.setup.implementations = parse_implementations(session.settings.list("iut"), session.catalogue,
-                                                     session.catalogue.select(cases_of_role));
+  file.setup.implementations = parse_implementations(session.settings.list("iut"), session.catalogue(),
+                                                     session.catalogue().select(cases_of_role));
   const std::string role = file.role->test_case.role();
   for (const conformance::Assignment& one : file.setup.implementations) {
     if (one.role.empty() || one.role == role) continue;
@@ -123,7 +123,7 @@ int case_of_input(Session& session, SequenceFile& target, const std::string& pat
 
 int replay_sequence(Session& session) {
   const std::string& path = session.operands.front();
-  SequenceFile stored = load_sequence_file(path, session.catalogue);
+  SequenceFile stored = load_sequence_file(path, session.catalogue());
   stored.setup.limits = limits_from(session.settings);
   const bool is_other = session.settings.origin("iut") != Origin::fallback;
   if (is_other) assign_implementations(session, stored);

@@ -1,9 +1,12 @@
 // The verbs of the program, one file each, and what they are given.
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/program.hpp"
@@ -13,12 +16,27 @@
 
 namespace fieldproof::cli {
 
-struct Session {
-  const conformance::Catalogue& catalogue;  // under all disturbances
+class Session {
+ public:
+  Session(Settings& settings_, Terminal& terminal_, std::vector<std::string> operands_,
+          std::vector<std::string> arguments_)
+      : settings(settings_),
+        terminal(terminal_),
+        operands(std::move(operands_)),
+        arguments(std::move(arguments_)) {}
+
+  // Of all protocols, under all disturbances. It is made when it is asked for first: a station that is called
+  // once a case, and the verbs of networks, do without it.
+  const conformance::Catalogue& catalogue() const;
+
   Settings& settings;
   Terminal& terminal;
   std::vector<std::string> operands;   // selectors, case id, run directories
   std::vector<std::string> arguments;  // the command line as it was typed, program first
+
+ private:
+  mutable std::once_flag is_made_;
+  mutable std::unique_ptr<const conformance::Catalogue> catalogue_;
 };
 
 // Each answers with the exit code of the program.

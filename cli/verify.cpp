@@ -30,15 +30,15 @@ struct Target {
 Target target_of(Session& session) {
   const std::string& first = session.operands.front();
   if (session.operands.size() == 1 && first.ends_with(".json") && std::filesystem::exists(first)) {
-    CaseFile stored = load_case(first, session.catalogue);
+    CaseFile stored = load_case(first, session.catalogue());
     stored.setup.limits = limits_from(session.settings);
     Target target{{}, stored.setup, std::make_unique<StoredEntry>(stored, session)};
     target.entries.push_back(**target.stored);
     return target;
   }
   Target target;
-  target.entries = session.catalogue.select(session.operands);
-  target.setup = setup_from(session.settings, session.catalogue, target.entries);
+  target.entries = session.catalogue().select(session.operands);
+  target.setup = setup_from(session.settings, session.catalogue(), target.entries);
   return target;
 }
 
