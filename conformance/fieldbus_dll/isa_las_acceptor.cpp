@@ -129,6 +129,7 @@ void IsaLasAcceptor::hear_noise(Time end) {
 }
 
 void IsaLasAcceptor::hear_transfer(std::uint8_t from, Time end) {
+  if (awaited_) report(IsaEventKind::token_dropped, from);
   report(IsaEventKind::scheduler_taken, from);
   silent_since_ = begin_ = end;
   out_.reset();
@@ -236,7 +237,7 @@ IsaLasAcceptor::Found IsaLasAcceptor::say_reply(const DrivenDlpdu& dlpdu) {
   const Reply owed = *std::exchange(owed_, std::nullopt);
   silent_since_ = dlpdu.end;
   if (out_ && !out_->over) {
-    out_->may_from = std::max(out_->may_from, dlpdu.end + reply_wait());
+    out_->may_from = dlpdu.end + reply_wait();
     out_->must_by = std::max(out_->must_by, dlpdu.end + reply_wait());
   }
   Request* const request = most_urgent(replies_, owed.least);

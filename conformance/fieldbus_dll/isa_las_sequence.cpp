@@ -306,6 +306,8 @@ class IsaLasSequenceRun {
       return Mismatch{{fmt::format("data of {} octets is {}", data.size(), is_right ? "taken" : "refused")},
                       is_taken ? "taken" : "refused"};
     });
+    // Who has nothing else to do begins at once.
+    if (bench_.next_begins(bench_.now())) obey();
   }
 
   void order(std::uint8_t heir) {
@@ -322,16 +324,19 @@ class IsaLasSequenceRun {
                     "an order without a node is refused", "it is taken");
       order(kFirstOrdered);
     }
-    order(kHeirOfIsaLas);
+    // On a free link a TL may begin at once.
+    const bool is_too_late = command.numbers[2] > 1 && bench_.next_begins(bench_.now());
+    if (!is_too_late) order(kHeirOfIsaLas);
+    const std::uint8_t heir = is_too_late ? kFirstOrdered : kHeirOfIsaLas;
     for (int said = 0; said < kMostBeforeTransfer; ++said) {
       const auto one = next_said();
-      if (one && (one->octet(0) & 0xF0U) == bench_.rules().codes.tl) return take_over(command);
+      if (one && (one->octet(0) & 0xF0U) == bench_.rules().codes.tl) return take_over(command, heir);
       if (one && is_token(*one)) give_back(*one);
     }
     judge_.fail("no_transfer", {{"a TL as soon as no token is out"}, "none", bench_.now()});
   }
 
-  void take_over(const SequenceCommand& command) {
+  void take_over(const SequenceCommand& command, std::uint8_t heir) {
     const auto& codes = bench_.rules().codes;
     const auto header_for_third = [&](std::uint8_t code, std::uint8_t from) {
       return header(code, Priority::normal, kThirdSender, from);
@@ -339,10 +344,9 @@ class IsaLasSequenceRun {
     if (command.numbers[3] == 1) say(header_for_third(codes.du, IsaBench::kPeer));
     if (command.numbers[3] == 2) say(header_for_third(codes.du, kNoAddress));
     if (command.numbers[0] == 0) return;
-    const std::array shown{header_for_third(codes.du, kHeirOfIsaLas), bench_.ee(kHeirOfIsaLas),
-                           header_for_third(codes.et, kHeirOfIsaLas),
-                           header_for_third(codes.cd, kHeirOfIsaLas),
-                           header(codes.du, Priority::normal, bench_.address(), kHeirOfIsaLas)};
+    const std::array shown{header_for_third(codes.du, heir), bench_.ee(heir),
+                           header_for_third(codes.et, heir), header_for_third(codes.cd, heir),
+                           header(codes.du, Priority::normal, bench_.address(), heir)};
     say(shown.at(static_cast<std::size_t>(command.numbers[1])));
   }
 

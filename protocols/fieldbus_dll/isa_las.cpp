@@ -198,6 +198,7 @@ void IsaLas::on_transferred(kernel::Time now) {
 }
 
 void IsaLas::take_scheduler(const IsaDlpdu& tl, kernel::Time now) {
+  if (IsaDle::state() == DleState::awaiting_reply) tell(IsaEventKind::token_dropped, tl.source, now);
   drop_token();
   enter(DleState::idle);
   begin_ = now;
