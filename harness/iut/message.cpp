@@ -13,7 +13,6 @@ namespace {
 constexpr std::uint8_t kParityWrong = 1;
 constexpr std::uint8_t kStopMissing = 2;
 constexpr std::uint8_t kSensesActivity = 1;  // of capabilities
-constexpr std::size_t kMostSettings = 1000;
 
 struct NamedType {
   MessageType type;
@@ -152,7 +151,6 @@ CaseBegin read_case_begin(MessageReader& reader) {
   begin.id = reader.text();
   begin.seed = reader.u64();
   const std::size_t count = reader.u16();
-  if (count > kMostSettings) throw MessageError(fmt::format("{} settings", count));
   for (std::size_t n = 0; n < count; ++n) {
     std::string name = reader.text();
     begin.settings.emplace_back(std::move(name), reader.i64());

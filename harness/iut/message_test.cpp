@@ -302,11 +302,20 @@ TEST(MessageTest, RateThatNoLineHasIsRefused) {
   }
 }
 
-TEST(MessageTest, MoreSettingsThanARoleHasAreRefused) {
+TEST(MessageTest, ListOfSettingsMayBeLong) {
   CaseBegin begin{"a/b/c", 1, {}};
-  begin.settings.resize(1001, {"x", 1});
+  for (int n = 1; n <= 5000; ++n) begin.settings.emplace_back("schedule_items_" + std::to_string(n), n);
   MessageWriter writer;
   const Octets body = body_of(write_case_begin(writer, begin));
+  MessageReader reader(body);
+  EXPECT_EQ(read_case_begin(reader).settings, begin.settings);
+}
+
+TEST(MessageTest, MoreSettingsThanFollowAreRefused) {
+  MessageWriter writer;
+  writer.begin(MessageType::case_begin).text("a/b/c").u64(1).u16(0xFFFF);
+  writer.text("x").i64(1);
+  const Octets body = body_of(writer.finish());
   MessageReader reader(body);
   EXPECT_THROW(read_case_begin(reader), MessageError);
 }
