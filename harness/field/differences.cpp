@@ -15,6 +15,24 @@ void add_difference(const std::string& name, const std::string& here, const std:
   if (here != usual) lines.push_back(fmt::format("{} {} in place of {}", name, here, usual));
 }
 
+// A list of hundreds of items would bury the lines around it.
+std::string begin_of_list(const std::string& text, std::size_t items) {
+  constexpr std::size_t kMostText = 400;
+  if (text.size() <= kMostText) return text;
+  return fmt::format("{}, ... ({} in all)", text.substr(0, text.rfind(", ", kMostText)), items);
+}
+
+void add_list(const Leaf& leaf, std::vector<std::string>& lines) {
+  const Row& row = leaf.row;
+  const void* here = row.member(leaf.object);
+  const void* usual = row.member(leaf.reference);
+  const std::string text = text_of_list(row, here);
+  const std::string usual_text = text_of_list(row, usual);
+  if (text == usual_text) return;
+  lines.push_back(fmt::format("{} {} in place of {}", leaf.name, begin_of_list(text, row.list.size(here)),
+                              begin_of_list(usual_text, row.list.size(usual))));
+}
+
 void add_custom(const Leaf& leaf, std::vector<std::string>& lines) {
   const Custom& custom = *leaf.row.custom;
   if (custom.put == nullptr) return;
@@ -37,8 +55,7 @@ std::vector<std::string> differences_of_any(const AnyTable& table, const void* o
     if (leaf.row.kind == Kind::custom) {
       add_custom(leaf, lines);
     } else if (leaf.row.kind == Kind::list) {
-      add_difference(leaf.name, text_of_list(leaf.row, leaf.row.member(leaf.object)),
-                     text_of_list(leaf.row, leaf.row.member(leaf.reference)), lines);
+      add_list(leaf, lines);
     } else if (leaf.number() != leaf.reference_number()) {
       add_difference(leaf.name, text_of(leaf.row, leaf.number()), text_of(leaf.row, leaf.reference_number()),
                      lines);

@@ -188,6 +188,18 @@ TEST(Field, DifferencesAreOneLineForEachRow) {
                                       "is_loud yes in place of no", "live 10h, 11h in place of none"}));
 }
 
+TEST(Field, DifferenceOfALongListIsItsBeginAndItsLength) {
+  Sample sample;
+  sample.live.assign(200, 0x10);
+  const std::vector<std::string> lines = differences_of_any(kSampleTable, &sample);
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_TRUE(lines.front().starts_with("live 10h, 10h, 10h, ")) << lines.front();
+  EXPECT_TRUE(lines.front().ends_with(", 10h, ... (200 in all) in place of none")) << lines.front();
+  EXPECT_LT(lines.front().size(), 500U);
+  sample.live.back() = 0x11;
+  EXPECT_NE(differences_of_any(kSampleTable, &sample), std::vector<std::string>{});
+}
+
 TEST(Field, MarkdownHasALineForEachSetting) {
   const std::string text = markdown_of(kSampleTable);
   EXPECT_NE(text.find("| `limit` | ps | 0 s to 1.000 s | 25.000 ms | of silence | searched |\n"),
