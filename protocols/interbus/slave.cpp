@@ -148,10 +148,16 @@ void Slave::relay_only(segment::PortIndex from, const line::Waveform& reception)
   TelegramRelay& relay = relays_[from];
   open_way(from, now_);
   const bool counts = is_sign_of_life(from);
-  receivers_[from].receive(reception, [&](const line::Waveform& wave, const line::Telegram& telegram) {
-    relay.put(wave, telegram);
-    if (counts) note_life(wave, telegram);
-  });
+  if (counts) {
+    receivers_[from].receive(reception, [&](const line::Waveform& wave, const line::Telegram& telegram) {
+      relay.put(wave, telegram);
+      note_life(wave, telegram);
+    });
+  } else {
+    receivers_[from].receive(reception, [&relay](const line::Waveform& wave, const line::Telegram& telegram) {
+      relay.put(wave, telegram);
+    });
+  }
   relay.close();
   if (counts) supervise();
 }

@@ -53,7 +53,8 @@ class TelegramRelay {
   }
 
  private:
-  void begin(const line::Waveform& reception, std::uint32_t level) {
+  // Once for a reception; apart, so that what is done for each telegram stays small.
+  [[gnu::noinline]] void begin(const line::Waveform& reception, std::uint32_t level) {
     close();
     base_ = level;
     out_.levels.make_room(reception.levels.size() - level + line::kDataTelegramLevels);
