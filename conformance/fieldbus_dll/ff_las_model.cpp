@@ -20,6 +20,12 @@ using kernel::Duration;
 using kernel::Time;
 
 constexpr std::int64_t kMostSilentSlots = 16;
+constexpr std::int64_t kLeastSilentSlots = 8;
+constexpr std::size_t kOctetsOfCheck = 2;
+constexpr std::size_t kOctetsOfProbeResponse = 2 + kOctetsOfCheck;
+constexpr std::size_t kOctetsAroundData = 5 + kOctetsOfCheck;
+constexpr std::size_t kOctetsOfTransfer = 4 + kOctetsOfCheck;
+constexpr std::size_t kOctetsOfTime = 7 + kOctetsOfCheck;
 constexpr std::size_t kMostCirculations = 2;
 
 constexpr unsigned kLongOfLas = 0x08;
@@ -38,6 +44,11 @@ Priority priority_said(const DrivenDlpdu& dlpdu) {
   return static_cast<Priority>(dlpdu.octet(0) & kPriorityBits);
 }
 
+FfAddress source_of_dt1(const DrivenDlpdu& dt1) {
+  const std::size_t octets = (dt1.octet(0) & kLongOfLas) != 0 ? 4 : 2;
+  return address_at(dt1, 1 + octets, octets);
+}
+
 unsigned grant_said(const DrivenDlpdu& pt) {
   return static_cast<unsigned>(pt.octet(2) << 8 | pt.octet(3));
 }
@@ -52,12 +63,15 @@ Duration FfLasModel::times(std::int64_t octets) const {
   return fieldbus_dll::octets(rules().link, octets);
 }
 
-Time FfLasModel::due() const {
+Time FfLasModel::item_at(std::size_t number) const {
   const auto& [version, macrocycle, items] = configuration_.schedule;
-  if (items.empty()) return kernel::kNever;
-  const auto cycle = static_cast<std::int64_t>(items_done_ / items.size());
+  const auto cycle = static_cast<std::int64_t>(number / items.size());
   return link_time_begin_ +
-         (cycle * macrocycle + std::int64_t{items[items_done_ % items.size()].at}) * fieldbus_dll::kTick;
+         (cycle * macrocycle + std::int64_t{items[number % items.size()].at}) * fieldbus_dll::kTick;
+}
+
+Time FfLasModel::due() const {
+  return configuration_.schedule.items.empty() ? kernel::kNever : item_at(items_done_);
 }
 
 Time FfLasModel::silent_until() const {
@@ -105,6 +119,8 @@ void FfLasModel::hear_probe_response(Time end) {
   nodes_.at(node) = {.is_live = true, .live_since = circulations_};
   to_activate_[node] = circulations_;
   list_changed_ = circulations_;
+  ++fewest_changes_;
+  ++most_changes_;
 }
 
 void FfLasModel::hear_noise(Time end) {
@@ -140,7 +156,11 @@ void FfLasModel::expect_event_of(const Question& question) {
 // ---- who is live ----
 
 void FfLasModel::remove(std::uint8_t node) {
-  if (!nodes_.at(node).was_left_open) list_changed_ = circulations_;
+  ++most_changes_;
+  if (!nodes_.at(node).was_left_open) {
+    ++fewest_changes_;
+    list_changed_ = circulations_;
+  }
   nodes_.at(node) = {};
   to_activate_.erase(node);
 }
@@ -190,12 +210,70 @@ FfLasModel::Found FfLasModel::close_question(Time now) {
   return LinkObjection{"does_not_wait", "an answer, or silence for V(MRD) x V(ST), or the end of the token"};
 }
 
-// V(MSO) and V(MID) before what is due next, with an octet for rounding.
+// An own buffer that was never written has nothing to say.
+Time FfLasModel::next_said_item() const {
+  const auto& [version, macrocycle, items] = configuration_.schedule;
+  const auto is_said = [&](const fieldbus_dll::FfScheduleItem& item) {
+    const auto own = own_.find(item.address);
+    return fieldbus_dll::node_of(item.address) != configuration_.node ||
+           (own != own_.end() && own->second.since != kernel::kNever);
+  };
+  for (std::size_t n = 0; n < items.size(); ++n) {
+    if (is_said(items[(items_done_ + n) % items.size()])) return item_at(items_done_ + n);
+  }
+  return kernel::kNever;
+}
+
+bool FfLasModel::leaves_time(Time end, std::int64_t spare) const {
+  const Time next = next_said_item();
+  const std::int64_t free =
+      rules().scheduling_overhead_octets + std::int64_t{rules().link.inter_pdu_delay_octets} + spare;
+  return next == kernel::kNever || end + times(free) <= next + kLinkRounding;
+}
+
+// An octet for rounding.
 bool FfLasModel::has_time_for_td() const {
-  constexpr std::size_t kOctetsOfTd = 9;  // with its check
-  const fieldbus_dll::LinkRules& link = rules().link;
-  const std::int64_t free = rules().scheduling_overhead_octets + 2 * link.inter_pdu_delay_octets + 1;
-  return silent_since_ + times(free) + frame_time(link, kOctetsOfTd) <= due();
+  const Time begin = silent_since_ + times(rules().link.inter_pdu_delay_octets);
+  return leaves_time(begin + frame_time(rules().link, kOctetsOfTime), 1);
+}
+
+Duration FfLasModel::time_of(const DrivenDlpdu& dlpdu) const {
+  const auto& codes = rules().codes;
+  const Duration frame = dlpdu.end - dlpdu.begin;
+  const Duration answer = response_delay(rules().link);
+  if (has_las_code(dlpdu, codes.pn, 0))
+    return frame + answer + frame_time(rules().link, kOctetsOfProbeResponse);
+  if (has_las_code(dlpdu, codes.tl, 0)) return frame + answer;
+  return frame;
+}
+
+// TD, then what its entity sends, then a TL, then the circulation: what was there when the line became free.
+FfLasModel::Found FfLasModel::check_order(const DrivenDlpdu& dlpdu) const {
+  const auto& codes = rules().codes;
+  if (!leaves_time(dlpdu.begin + time_of(dlpdu), 0))
+    return LinkObjection{"over_what_is_due", "all but a CD ends V(MSO) and V(MID) before the next item"};
+  const auto has_time = [&](std::size_t octets, Duration more) {
+    return leaves_time(dlpdu.begin + frame_time(rules().link, octets) + more, 1);
+  };
+  if (has_las_code(dlpdu, codes.td, 0)) return std::nullopt;
+  if (td_due_ <= silent_since_ && has_time(kOctetsOfTime, {}))
+    return LinkObjection{"time_not_told", "a TD, before all else that is not due: its time has come"};
+  const bool is_of_entity = has_las_code(dlpdu, codes.dt1, kLongOfLas | kFinalBit | kPriorityBits) &&
+                            source_of_dt1(dlpdu) == fieldbus_dll::address_of(configuration_.node);
+  if (is_of_entity || has_las_code(dlpdu, codes.tl, 0)) return std::nullopt;
+  if (heir_ && ordered_ <= silent_since_ && has_time(kOctetsOfTransfer, response_delay(rules().link)))
+    return LinkObjection{"not_transferred", "the TL that was ordered, before the circulation goes on"};
+  return std::nullopt;
+}
+
+// What is sent is all that is urgent and has time within V(DTHT).
+FfLasModel::Found FfLasModel::check_own_turn(const DrivenDlpdu& next) const {
+  const auto& queue = queues_.at(static_cast<std::size_t>(Priority::urgent));
+  if (!own_turn_ || own_turn_->is_interrupted || queue.empty()) return std::nullopt;
+  const Time end = next.begin + frame_time(rules().link, kOctetsAroundData + queue.front().size());
+  const Time over = own_turn_->begin + times(rules().token_holding_octets);
+  if (end + times(2) > over || !leaves_time(end, 2)) return std::nullopt;
+  return LinkObjection{"data_not_sent", "more urgent data of its user: they have time within V(DTHT)"};
 }
 
 FfLasModel::Found FfLasModel::say(const DrivenDlpdu& dlpdu) {
@@ -213,6 +291,10 @@ FfLasModel::Found FfLasModel::say(const DrivenDlpdu& dlpdu) {
   const bool is_asked = std::exchange(is_asked_for_time_, false);
   if (is_asked && has_las_code(dlpdu, rules().codes.td, 0)) {
     found = say_time(dlpdu, true);
+    if (!leaves_time(dlpdu.end, 0))
+      found = LinkObjection{"over_what_is_due",
+                            "no answer to a CT that ends less than V(MSO) and V(MID) before "
+                            "the next item"};
   } else if (is_asked && has_time_for_td()) {
     found = LinkObjection{"time_request_ignored", "a TD: it was asked for the time"};
   } else {
@@ -231,14 +313,24 @@ FfLasModel::Found FfLasModel::say_dlpdu(const DrivenDlpdu& dlpdu) {
   if (Found missed = pass_own_items(dlpdu)) return missed;
   if (has_las_code(dlpdu, codes.cd, kLongOfLas | kFinalBit | kPriorityBits)) return say_cd(dlpdu);
   if (dlpdu.begin > due()) return LinkObjection{"compelled_late", "the CD that is due, before all else"};
+  if (has_las_code(dlpdu, codes.idle, 0)) return say_idle(dlpdu);
+  if (Found other = check_order(dlpdu)) return other;
   const bool has_priority = (dlpdu.octet(0) & kPriorityBits) != 0;
   if (has_priority && has_las_code(dlpdu, codes.pt, kFinalBit | kPriorityBits)) return say_token(dlpdu);
   if (has_las_code(dlpdu, codes.pn, 0)) return say_probe(dlpdu);
   if (has_las_code(dlpdu, codes.td, 0)) return say_time(dlpdu, false);
   if (has_las_code(dlpdu, codes.dt1, kLongOfLas | kFinalBit | kPriorityBits)) return say_data(dlpdu);
   if (has_las_code(dlpdu, codes.tl, 0)) return say_transfer(dlpdu);
-  if (has_las_code(dlpdu, codes.idle, 0)) return std::nullopt;
-  return LinkObjection{"unexpected_dlpdu", "CD, PT, PN, TD, DT1 or IDLE"};
+  return LinkObjection{"unexpected_dlpdu", "CD, PT, PN, TD, DT1, TL or IDLE"};
+}
+
+// In the place of a probe whenever there is nobody to probe.
+FfLasModel::Found FfLasModel::say_idle(const DrivenDlpdu& idle) {
+  ++idles_;
+  if (!has_to_probe()) own_turn_.reset();
+  const Time earliest = silent_since_ + times(kLeastSilentSlots * rules().link.slot_time_octets);
+  if (!has_to_probe() || idle.begin + kLinkRounding >= earliest) return std::nullopt;
+  return LinkObjection{"idle_early", "silence for V(ST) x 8 before an IDLE: nodes are to be probed"};
 }
 
 FfLasModel::Found FfLasModel::say_cd(const DrivenDlpdu& cd) {
@@ -246,7 +338,8 @@ FfLasModel::Found FfLasModel::say_cd(const DrivenDlpdu& cd) {
   const auto& item = configuration_.schedule.items[items_done_ % configuration_.schedule.items.size()];
   const std::size_t octets = (cd.octet(0) & kLongOfLas) != 0 ? 4 : 2;
   const FfAddress address = address_at(cd, 1, octets);
-  if (address != item.address || priority_said(cd) != item.priority)
+  interrupt_own_turn();
+  if (address != item.address || priority_said(cd) != item.priority || (cd.octet(0) & kFinalBit) != 0)
     return LinkObjection{"compelled_wrong", fmt::format("a CD for {:04X}", item.address)};
   const Time latest = std::max(due(), free_latest_) + times(rules().scheduling_overhead_octets);
   if (cd.begin + kLinkRounding < due())
@@ -265,11 +358,13 @@ FfLasModel::Found FfLasModel::say_token(const DrivenDlpdu& pt) {
   if (!nodes_.at(node).is_live)
     return LinkObjection{"token_for_removed", fmt::format("no PT for {:02X}: it is not live", node)};
   const bool begins = (pt.octet(0) & kFinalBit) != 0;
-  Found found = begins ? begin_circulation(pt) : go_on(pt);
+  Found found = check_own_turn(pt);
+  if (!found) found = begins ? begin_circulation(pt) : go_on(pt);
+  own_turn_.reset();
   if (!found) found = check_grant(pt);
   show_live(node);
   last_token_ = node;
-  probes_ = 0;
+  probes_ = idles_ = 0;
   question_ =
       Question{.node = node, .asked = Asked::passes_token, .token_ends = pt.end + times(grant_said(pt))};
   return found;
@@ -286,9 +381,9 @@ FfLasModel::Found FfLasModel::check_grant(const DrivenDlpdu& pt) const {
   const bool is_cut = grant < rules().token_holding_octets && due() != kernel::kNever;
   if (is_cut && pt.end + times(grant + free + 2) < due())
     return LinkObjection{"token_shorter_than_the_time", "all the time that is left before the next item"};
-  if (pt.end + times(grant) > due())
-    return LinkObjection{"token_over_due",
-                         fmt::format("a token that ends before {}", kernel::describe(due()))};
+  if (!leaves_time(pt.end + times(grant), 0))
+    return LinkObjection{"token_over_due", fmt::format("a token that ends V(MSO) and V(MID) before {}",
+                                                       kernel::describe(next_said_item()))};
   return std::nullopt;
 }
 
@@ -299,10 +394,20 @@ bool FfLasModel::has_to_probe() const {
   return false;
 }
 
+bool FfLasModel::may_have_to_probe() const {
+  if (has_to_probe()) return true;
+  for (unsigned node = rules().first_node; node <= rules().last_node; ++node) {
+    if (is_polled(node) && is_open(static_cast<std::uint8_t>(node))) return true;
+  }
+  return false;
+}
+
 FfLasModel::Found FfLasModel::begin_circulation(const DrivenDlpdu& pt) {
   if (last_token_) {
     if (auto left_out = pass_over(*last_token_ + 1U, kNodes)) return left_out;
     if (probes_ == 0 && has_to_probe()) return LinkObjection{"no_probe", "a PN between two circulations"};
+    if (idles_ + probes_ == 0 && !may_have_to_probe())
+      return LinkObjection{"no_probe", "an IDLE between two circulations: there is no node to probe"};
   }
   ++circulations_;
   const bool is_first = std::exchange(is_first_circulation_, false);
@@ -311,11 +416,23 @@ FfLasModel::Found FfLasModel::begin_circulation(const DrivenDlpdu& pt) {
   std::vector<Priority> all{said};
   if (is_first) all = {Priority::urgent};
   if (priority_ && circulation_begin_) all = priorities_behind(pt.begin - *circulation_begin_);
+  const bool is_admitted = !own_turn_ || own_turn_->lowest >= std::min(said, least_before_token(is_first));
   circulation_begin_ = pt.begin;
   priority_ = said;
+  if (!is_admitted)
+    return LinkObjection{"sends_other_data",
+                         "data of the priority of its circulation at least, in its own turn"};
   if (std::ranges::find(all, said) == all.end())
     return LinkObjection{"priority_wrong", fmt::format("a token with priority {}", text_of(all.front()))};
   return check_told();
+}
+
+// Before the first token a turn has the priority of the circulation before, or what its rotation leads to so
+// far.
+FfLasModel::Priority FfLasModel::least_before_token(bool is_first) const {
+  if (is_first) return Priority::urgent;
+  const bool is_step = rules().steers_by_three_steps && priority_ == Priority::urgent;
+  return is_step ? Priority::normal : Priority::time_available;
 }
 
 // Both, where the rotation is V(TTRT) to an octet.
@@ -369,6 +486,9 @@ bool FfLasModel::is_next_to_probe(std::uint8_t node) const {
 
 FfLasModel::Found FfLasModel::say_probe(const DrivenDlpdu& pn) {
   const std::uint8_t node = pn.octet(1);
+  if (Found cut = check_own_turn(pn)) return cut;
+  own_turn_.reset();
+  is_item_in_turn_ = false;
   if (!is_polled(node)) return LinkObjection{"probes_unpolled", "a PN for an address that may be polled"};
   if (node == configuration_.node || is_surely_live(node))
     return LinkObjection{"probes_live_node", "a PN for a node that is not live"};
@@ -396,11 +516,21 @@ FfLasModel::Found FfLasModel::say_time(const DrivenDlpdu& td, bool is_answer) {
   const Duration period = rules().time_distribution_period * 9 / 10;
   if (!is_answer && distributed_ && td.begin + times(1) < *distributed_ + period)
     return LinkObjection{"time_told_too_often", "a TD when 0.9 x V(TDP) have passed, or for who asks"};
-  if (!is_answer) distributed_ = td.begin;
+  if (!is_answer) {
+    distributed_ = td.begin;
+    td_due_ = td.begin + period;
+  }
   std::uint64_t ticks = 0;
   for (std::size_t n = 1; n <= 6; ++n) ticks = ticks << 8 | td.octet(n);
   const auto last = std::exchange(told_, Reported{ticks, td.end});
   time_told_ = td.begin;
+  // Whatever its link time begins with: it is the same with each supply.
+  const auto ahead = static_cast<std::int64_t>(ticks) - (td.end - link_time_begin_) / fieldbus_dll::kTick;
+  if (std::exchange(is_new_to_link_time_, false)) {
+    if (!first_ticks_) first_ticks_ = ahead;
+    if (std::abs(ahead - *first_ticks_) > 2)
+      return LinkObjection{"time_wrong", "a link time that begins anew with the supply"};
+  }
   if (!last) return std::nullopt;
   const auto said = static_cast<std::int64_t>(ticks - last->ticks);
   const std::int64_t passed = (td.end - last->end) / fieldbus_dll::kTick;
@@ -410,23 +540,30 @@ FfLasModel::Found FfLasModel::say_time(const DrivenDlpdu& td, bool is_answer) {
 
 FfLasModel::Found FfLasModel::say_data(const DrivenDlpdu& dt1) {
   const std::size_t octets = (dt1.octet(0) & kLongOfLas) != 0 ? 4 : 2;
-  const FfAddress to = address_at(dt1, 1, octets);
-  const FfAddress from = address_at(dt1, 1 + octets, octets);
   const std::size_t header = std::min(dt1.octets.size(), 1 + 2 * octets);
   const Octets data(dt1.octets.begin() + static_cast<std::ptrdiff_t>(header), dt1.octets.end());
-  if (from != fieldbus_dll::address_of(configuration_.node, fieldbus_dll::kEntity))
+  if (source_of_dt1(dt1) != fieldbus_dll::address_of(configuration_.node, fieldbus_dll::kEntity))
     return say_of_user(dt1, data);
   const auto kind = static_cast<fieldbus_dll::SpduKind>(data.empty() ? 0 : data.front());
-  if (kind == fieldbus_dll::SpduKind::activation) return say_activation(to);
+  if (kind == fieldbus_dll::SpduKind::activation) return say_activation(dt1);
   if (kind == fieldbus_dll::SpduKind::live_list) return say_live_list(data);
   return LinkObjection{"unexpected_dlpdu", "an activation or the live list"};
 }
 
-FfLasModel::Found FfLasModel::say_activation(FfAddress to) {
-  const std::uint8_t node = fieldbus_dll::node_of(to);
-  to_activate_.erase(node);
-  if (nodes_.at(node).is_live) return std::nullopt;
-  return LinkObjection{"unexpected_dlpdu", fmt::format("no activation for {:02X}: it is not live", node)};
+FfLasModel::Found FfLasModel::say_activation(const DrivenDlpdu& dt1) {
+  const auto activation = [&](std::uint8_t node) {
+    return octets_of({.type = fieldbus_dll::FfType::dt1,
+                      .priority = Priority::normal,
+                      .destination = fieldbus_dll::address_of(node),
+                      .source = fieldbus_dll::address_of(configuration_.node),
+                      .data = {static_cast<std::uint8_t>(fieldbus_dll::SpduKind::activation)}},
+                     rules());
+  };
+  const std::uint8_t node = dt1.octet(1);
+  if (to_activate_.erase(node) == 0)
+    return LinkObjection{"unexpected_dlpdu", fmt::format("no activation for {:02X}: it was not found", node)};
+  if (dt1.octets == activation(node)) return std::nullopt;
+  return LinkObjection{"not_activated", words_of(activation(node), rules())};
 }
 
 FfLasModel::Found FfLasModel::say_live_list(const Octets& list) {
@@ -434,8 +571,10 @@ FfLasModel::Found FfLasModel::say_live_list(const Octets& list) {
     const auto node = static_cast<std::uint8_t>(n);
     const std::size_t octet = 2U + n / 8U;
     const bool is_told = octet < list.size() && (list[octet] >> (7 - n % 8) & 1) != 0;
-    if (node == configuration_.node) continue;
-    if (is_open(node)) {
+    if (node == configuration_.node) {
+      if (!is_told)
+        return LinkObjection{"live_list_wrong", fmt::format("{:02X}, which sends it, is live", node)};
+    } else if (is_open(node)) {
       is_told ? show_live(node) : remove(node);
     } else if (is_told != nodes_.at(node).is_live) {
       return LinkObjection{"live_list_wrong",
@@ -443,10 +582,35 @@ FfLasModel::Found FfLasModel::say_live_list(const Octets& list) {
     }
   }
   list_changed_.reset();
-  return std::nullopt;
+  return check_revision(list.size() > 1 ? list[1] : std::uint8_t{0});
+}
+
+// One more for each change since the last one, also with each supply.
+FfLasModel::Found FfLasModel::check_revision(std::uint8_t said) {
+  const bool is_first = !revision_;
+  const unsigned fewest = std::exchange(fewest_changes_, 0);
+  const unsigned most = std::exchange(most_changes_, 0);
+  std::optional<std::uint8_t> base = std::exchange(revision_, said);
+  if (is_first && fewest == most) {
+    if (!first_revision_) first_revision_ = static_cast<std::uint8_t>(said - fewest);
+    base = first_revision_;
+  }
+  if (!base) return std::nullopt;
+  const auto changes = static_cast<std::uint8_t>(said - *base);
+  if (changes >= fewest && changes <= most) return std::nullopt;
+  return LinkObjection{"live_list_wrong",
+                       fmt::format("revision {}: {} more than {}, one for each change",
+                                   static_cast<std::uint8_t>(*base + fewest), fewest, *base)};
 }
 
 FfLasModel::Found FfLasModel::say_of_user(const DrivenDlpdu& dt1, const Octets& data) {
+  if (!own_turn_)
+    own_turn_ = OwnTurn{.begin = dt1.begin, .lowest = Priority::urgent, .is_interrupted = is_item_in_turn_};
+  own_turn_->lowest = std::min(own_turn_->lowest, priority_said(dt1));
+  if (dt1.end > own_turn_->begin + times(rules().token_holding_octets) + kLinkRounding)
+    return LinkObjection{"own_turn_too_long", "its own turn ends within V(DTHT)"};
+  if ((dt1.octet(0) & kFinalBit) != 0)
+    return LinkObjection{"sends_other_data", "a DT1 without F: it has no token to return"};
   for (const Priority priority : {Priority::urgent, Priority::normal, Priority::time_available}) {
     auto& queue = queues_.at(static_cast<std::size_t>(priority));
     if (queue.empty()) continue;

@@ -47,7 +47,9 @@ class FfLasModel {
   bool submit(Priority priority, const Octets& data);
   // A buffer of its own that its schedule has.
   bool write(fieldbus_dll::FfAddress address, const Octets& data, kernel::Time now);
-  void order_transfer(std::uint8_t node) { heir_ = node; }
+  void order_transfer(std::uint8_t node, kernel::Time now);
+  // It goes, and comes now: nothing outlasts it. Events count from here.
+  void lose_supply(kernel::Time now);
 
   // ---- what others say, until `end`; instants never decrease ----
   void hear_answer(kernel::Time end);  // what ends a token or a CD
@@ -65,8 +67,8 @@ class FfLasModel {
   Found end() const;
 
   bool is_scheduler() const { return is_scheduler_; }
-  // A PR is due.
-  bool is_probed() const { return is_probed_; }
+  // In standby: another scheduler has asked it.
+  bool owes_answer() const { return owed_.has_value(); }
   // When the line is silent it has been claimed by then.
   kernel::Duration claim_silence() const;
   // In link time.
@@ -114,17 +116,29 @@ class FfLasModel {
   // No token that is answered is a miss.
   unsigned misses_of_no_node() const { return std::max(rules().misses_until_removal, 1U); }
   kernel::Duration times(std::int64_t octets) const;
+  kernel::Time item_at(std::size_t number) const;  // of all macrocycles
   kernel::Time due() const;
   // It may have been removed, and may not.
   bool is_open(std::uint8_t node) const;
   bool is_polled(unsigned node) const;
   bool has_to_probe() const;
+  bool may_have_to_probe() const;
   bool is_next_to_probe(std::uint8_t node) const;
   bool has_time_for_td() const;
+  // The next item that has something to say.
+  kernel::Time next_said_item() const;
+  // What ends then, and may be followed by an answer, leaves V(MSO) and V(MID) free before what is due, with
+  // so many octets to spare.
+  bool leaves_time(kernel::Time end, std::int64_t spare) const;
+  // From the begin of a frame to the end of all that belongs to it.
+  kernel::Duration time_of(const DrivenDlpdu& dlpdu) const;
+  Found check_order(const DrivenDlpdu& dlpdu) const;
+  Found check_own_turn(const DrivenDlpdu& next) const;
 
   void leave();
   void take(kernel::Time now);
   void learn(const fieldbus_dll::FfDlpdu& dlpdu, kernel::Time end);
+  void owe_buffer(const fieldbus_dll::FfDlpdu& cd);
   Found say_in_standby(const DrivenDlpdu& dlpdu);
   const fieldbus_dll::FfScheduleItem* next_item() const;
   bool is_own_item_next() const;
@@ -145,12 +159,16 @@ class FfLasModel {
   Found pass_over(unsigned first, unsigned behind_last);
   Found check_grant(const DrivenDlpdu& pt) const;
   Found check_told() const;
+  Priority least_before_token(bool is_first) const;
+  void interrupt_own_turn();
   std::vector<Priority> priorities_behind(kernel::Duration rotation) const;
   Found say_probe(const DrivenDlpdu& pn);
   Found say_time(const DrivenDlpdu& td, bool is_answer);
   Found say_data(const DrivenDlpdu& dt1);
-  Found say_activation(fieldbus_dll::FfAddress to);
+  Found say_activation(const DrivenDlpdu& dt1);
   Found say_live_list(const Octets& list);
+  Found check_revision(std::uint8_t said);
+  Found say_idle(const DrivenDlpdu& idle);
   Found say_of_user(const DrivenDlpdu& dt1, const Octets& data);
 
   fieldbus_dll::FfConfiguration configuration_;
@@ -158,8 +176,9 @@ class FfLasModel {
   std::array<std::deque<Octets>, 4> queues_;  // by priority
 
   bool is_scheduler_ = true;
-  bool is_probed_ = false;
+  std::optional<Octets> owed_;        // in standby
   std::optional<std::uint8_t> heir_;  // it was ordered to hand the link to it
+  kernel::Time ordered_ = kernel::kStart;
   std::map<fieldbus_dll::FfAddress, OwnBuffer> own_;
 
   kernel::Time silent_since_ = kernel::kStart;
@@ -171,6 +190,7 @@ class FfLasModel {
   bool is_asked_for_time_ = false;
   kernel::Time time_told_ = kernel::kStart;
   std::optional<kernel::Time> distributed_;  // that time, since it is the scheduler
+  kernel::Time td_due_ = kernel::kStart;
   std::optional<Reported> told_;
   std::size_t items_done_ = 0;
   kernel::Time link_time_begin_ = kernel::kStart;
@@ -181,11 +201,29 @@ class FfLasModel {
   std::size_t circulations_ = 0;
   bool is_first_circulation_ = true;
   unsigned probes_ = 0;  // since the last token
+  unsigned idles_ = 0;   // the same
   std::optional<std::uint8_t> last_probe_;
 
   // The number of the circulation since which it is to be told.
   std::map<std::uint8_t, std::size_t> to_activate_;
   std::optional<std::size_t> list_changed_;
+  std::optional<std::uint8_t> revision_;  // told last, here or by another scheduler
+  unsigned fewest_changes_ = 0;           // since then, or since its supply
+  unsigned most_changes_ = 0;
+
+  // Its own turn in the circulation: since its first DT1.
+  struct OwnTurn {
+    kernel::Time begin;
+    Priority lowest;
+    bool is_interrupted = false;
+  };
+  std::optional<OwnTurn> own_turn_;
+  bool is_item_in_turn_ = false;  // since the last PN: its turn may have begun before
+
+  // What its supply begins with, whenever that comes.
+  std::optional<std::uint8_t> first_revision_;
+  std::optional<std::int64_t> first_ticks_;
+  bool is_new_to_link_time_ = true;
 };
 
 }  // namespace fieldproof::conformance

@@ -32,6 +32,9 @@ class FfLasModelTest : public testing::Test {
     return made;
   }
 
+  // Link time is due first.
+  void SetUp() override { EXPECT_EQ(says({0x11, 0, 0, 0, 0, 0, 0}), ""); }
+
   static Time octet_at(std::int64_t count) { return kernel::kStart + fieldbus_dll::octets({}, count); }
 
   // The reason of the objection; empty: none.
@@ -204,7 +207,7 @@ TEST_F(FfLasModelTest, WhatIsDueIsCompelledAsItsItemSays) {
 }
 
 TEST_F(FfLasModelTest, ATokenEndsBeforeWhatIsDue) {
-  idle_until(kBeforeDue - 9 - 100);
+  idle_until(kBeforeDue - 9 - 100 - 24);
   EXPECT_EQ(passes(0x11, kFirstMark), "");
   returned();
   EXPECT_EQ(passes(0x12), "token_over_due");
@@ -216,11 +219,10 @@ TEST_F(FfLasModelTest, ATokenThatIsCutUsesTheTime) {
 }
 
 TEST_F(FfLasModelTest, TheTimeGoesOnAndIsToldToWhoAsks) {
-  EXPECT_EQ(says({0x11, 0, 0, 0, 0, 0, 100}), "");
   EXPECT_EQ(passes(0x11, kFirstMark), "");
   model_.hear_time_request(heard_end(7));
   // 8 + 9 + 8 + 7 + 8 + 12 octet durations of 8.192 ticks after the first.
-  EXPECT_EQ(says({0x11, 0, 0, 0, 0, 0x02, 0x0E}), "");
+  EXPECT_EQ(says({0x11, 0, 0, 0, 0, 0x01, 0xAA}), "");
   model_.hear_time_request(heard_end(7));
   EXPECT_EQ(says({0x10}), "time_request_ignored");
 }
@@ -232,6 +234,86 @@ TEST_F(FfLasModelTest, ItsUsersDataIsSentTheMostUrgentFirst) {
   EXPECT_EQ(says({0xD3, 0x22, 0x30, kLas, 0x01, 2}), "");
   EXPECT_FALSE(model_.end().has_value());
   EXPECT_EQ(says({0xD2, 0x22, 0x30, kLas, 0x01, 3}), "sends_other_data");
+}
+
+TEST_F(FfLasModelTest, ItsOwnTurnReturnsNothingAndHasAnEnd) {
+  for (int n = 0; n < 8; ++n)
+    ASSERT_TRUE(model_.submit(Priority::urgent, Octets(30, static_cast<std::uint8_t>(n))));
+  const auto own = [](std::uint8_t n, std::uint8_t code) {
+    Octets dt1{code, 0x22, 0x30, kLas, 0x01};
+    dt1.insert(dt1.end(), 30, n);
+    return dt1;
+  };
+  EXPECT_EQ(says(own(0, 0xD7)), "sends_other_data");
+  EXPECT_EQ(says(own(0, 0xD3)), "");
+  EXPECT_EQ(says(own(1, 0xD3)), "own_turn_too_long");  // three times 40 and silences, within 100
+}
+
+TEST_F(FfLasModelTest, ItsOwnTurnIsUsed) {
+  ASSERT_TRUE(model_.submit(Priority::urgent, {1}) && model_.submit(Priority::urgent, {2}));
+  EXPECT_EQ(says({0xD3, 0x22, 0x30, kLas, 0x01, 1}), "");
+  EXPECT_EQ(passes(0x11, kFirstMark), "data_not_sent");
+}
+
+TEST_F(FfLasModelTest, ItsOwnTurnHasThePriorityOfTheCirculation) {
+  ASSERT_TRUE(model_.submit(Priority::normal, {1}));
+  EXPECT_EQ(says({0xD2, 0x22, 0x30, kLas, 0x01, 1}), "");
+  EXPECT_EQ(passes(0x11, kFirstMark), "sends_other_data");
+}
+
+TEST_F(FfLasModelTest, LiveListsAreNumberedAndHaveWhoSendsThem) {
+  circulate(Priority::urgent);
+  EXPECT_EQ(probes(0x13), "");
+  model_.hear_probe_response(heard_end(7));
+  Octets list{0xD2, 0xFF, 0xFF, kLas, 0x00, 0x02, 0x05};
+  list.resize(7 + 32);
+  list[7 + 2] = 0xF0;
+  EXPECT_EQ(says(list), "");
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::normal), "");
+  returned();
+  EXPECT_EQ(passes(0x12, 0, Priority::normal), "");
+  returned();
+  EXPECT_EQ(passes(0x13, 0, Priority::normal), "");
+  returned();
+  EXPECT_EQ(probes(0x14), "");
+  model_.hear_probe_response(heard_end(7));
+  list[7 + 2] = 0xF8;
+  EXPECT_EQ(says(list), "live_list_wrong");
+  list[6] = 0x05;
+  list[7 + 2] = 0x78;
+  EXPECT_EQ(says(list), "live_list_wrong");
+}
+
+TEST_F(FfLasModelTest, ATransferGoesBeforeTheCirculation) {
+  model_.order_transfer(0x12, octet_at(now_));
+  EXPECT_EQ(passes(0x11, kFirstMark), "not_transferred");
+}
+
+TEST_F(FfLasModelTest, WhatBelongsToAProbeAndATransferEndsBeforeWhatIsDue) {
+  idle_until(kBeforeDue - 24 - 32 - 4);
+  EXPECT_EQ(probes(0x13), "over_what_is_due");
+  model_.order_transfer(0x12, octet_at(now_));
+  EXPECT_EQ(says({0x06, 0x12, 0, 1}), "over_what_is_due");
+}
+
+TEST_F(FfLasModelTest, AnIdleIsNotSaidWhileNodesAreToBeProbed) {
+  circulate(Priority::urgent);
+  EXPECT_EQ(says({0x10}, 50), "idle_early");
+  EXPECT_EQ(says({0x10}, 64), "");
+}
+
+TEST_F(FfLasModelTest, TheSupplyBeginsWithTheSameRevisionAndTime) {
+  model_.lose_supply(octet_at(now_ += 50));
+  EXPECT_EQ(says({0x11, 0, 0, 0, 0, 2, 0}), "time_wrong");
+}
+
+TEST_F(FfLasModelTest, WhoWasTheSchedulerAnswersAsADevice) {
+  model_.hear_scheduler({0x01, 0x13}, heard_end(7));
+  model_.hear_scheduler({0xA2, kLas, 0x20}, heard_end(8));
+  EXPECT_TRUE(model_.owes_answer());
+  EXPECT_EQ(says({0x17, 0x01}), "not_a_device");
+  model_.hear_scheduler({0xA2, kLas, 0x20}, heard_end(8));
+  EXPECT_EQ(says({0x17, 0x00}), "");
 }
 
 }  // namespace

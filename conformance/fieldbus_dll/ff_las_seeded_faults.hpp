@@ -77,18 +77,19 @@ class ScheduleNotBegunBehindTl : public FfLas {
 
 // ---- circulation ----
 
-class PassesOtherwise : public FfLas {
+class SaysOtherwise : public FfLas {
  public:
   using Change = void (*)(FfDlpdu&);
-  PassesOtherwise(const FfConfiguration& configuration, Change change)
-      : FfLas(configuration), change_(change) {}
+  SaysOtherwise(const FfConfiguration& configuration, FfType type, Change change)
+      : FfLas(configuration), type_(type), change_(change) {}
 
  private:
   Octets written(const FfDlpdu& dlpdu) const override {
     FfDlpdu other = dlpdu;
-    if (other.type == FfType::pt) change_(other);
+    if (other.type == type_ && is_scheduler()) change_(other);
     return FfLas::written(other);
   }
+  FfType type_;
   Change change_;
 };
 
@@ -197,6 +198,30 @@ class LiveListReversed : public FfLas {
     Octets list = FfLas::live_list();
     for (std::size_t n = 2; n < list.size(); ++n)
       list[n] = static_cast<std::uint8_t>(line::reflect(list[n], 8));
+    return list;
+  }
+};
+
+class IdlesEarly : public FfLas {
+  using FfLas::FfLas;
+  kernel::Duration longest_silence() const override { return FfLas::longest_silence() * 5 / 8; }
+};
+
+// A DT1 of its own entity.
+inline bool is_of_entity(const FfDlpdu& dt1) {
+  return (dt1.source & 0xFFU) == fieldbus_dll::kEntity;
+}
+
+class LiveListUnnumbered : public FfLas {
+  using FfLas::FfLas;
+  Octets live_list() const override { return fieldbus_dll::live_list_spdu(0, live()); }
+};
+
+class NotInItsLiveList : public FfLas {
+  using FfLas::FfLas;
+  Octets live_list() const override {
+    Octets list = FfLas::live_list();
+    list[2U + node() / 8U] &= static_cast<std::uint8_t>(~(0x80U >> node() % 8));
     return list;
   }
 };

@@ -36,7 +36,8 @@ class FfLasSequenceRun {
     // Each datum that waits may take a macrocycle of its own.
     constexpr kernel::Duration kMacrocycle = std::int64_t{kMacrocycleOfLas} * fieldbus_dll::kTick;
     const kernel::Time end = bench_.now() + 3 * kMacrocycle;
-    const kernel::Time last = end + static_cast<std::int64_t>(sequence.commands.size()) * kMacrocycle;
+    const auto most = static_cast<std::int64_t>(sequence.commands.size()) + submitted_;
+    const kernel::Time last = end + most * kMacrocycle;
     while (bench_.now() < end || (model_.end() && bench_.now() < last)) answer(next_said());
     object(model_.end(), "silence", bench_.now());
     judge_events();
@@ -100,7 +101,7 @@ class FfLasSequenceRun {
       case LasWord::usurp:
         return number(0) == 2 ? interrupt(number(1)) : usurp(number(0) != 0, number(1));
       case LasWord::order:
-        return order(kNodesOfLas.at(at(0)), number(1));
+        return order(kNodesOfLas.at(at(0)), static_cast<HeirSends>(number(1)));
       case LasWord::second:
         return second(command);
       case LasWord::told:
@@ -109,6 +110,15 @@ class FfLasSequenceRun {
         return make_noise(number(0), number(1));
       case LasWord::hand:
         return hand(command);
+      case LasWord::flood:
+        for (std::int64_t n = 0; n < number(1); ++n) submit(static_cast<Priority>(number(0)), at(2));
+        return;
+      case LasWord::ask_late:
+        return ask_late(number(0), number(1) != 0);
+      case LasWord::entity:
+        return with_token([&](const DrivenDlpdu& pt) { say_of_entity(pt, number(0) != 0); });
+      case LasWord::supply:
+        return lose_supply(number(0));
     }
   }
 
@@ -253,6 +263,7 @@ class FfLasSequenceRun {
   void submit(Priority priority, std::size_t size) {
     const Octets data = bench_.numbered_data(size);
     const bool is_taken = bench_.submit(priority, data);
+    ++submitted_;
     const bool is_right = model_.submit(priority, data);
     judge_.expect(is_taken == is_right, is_right ? "data_refused" : "data_too_long_taken", [&] {
       return Mismatch{{fmt::format("data of {} octets is {}", size, is_right ? "taken" : "refused")},
@@ -316,17 +327,19 @@ class FfLasSequenceRun {
                             ? Octets{codes.pr, another}
                             : bench_.dt1(Priority::urgent, FfBench::kPeersAddress,
                                          fieldbus_dll::address_of(another, 1), bench_.numbered_data(4), true);
-    model_.hear_noise(say(said, later));
+    const kernel::Time end = say(said, later);
+    // A PR of another is no answer; a token counts as used, and does not come back.
+    probe ? model_.hear_none(end) : model_.hear_data(end);
   }
 
-  // Data of others are no scheduler's. Whether they are what came in place of the reply is left open.
+  // Data of others are no scheduler's: something has come in place of the reply.
   void interrupt(std::int64_t later) {
     const auto asked = next_that([&](const DrivenDlpdu& one) { return is_cd(bench_, one); });
     if (!asked) return;
     const auto another = static_cast<std::uint8_t>(asked->octet(1) + 1);
-    model_.hear_noise(say(bench_.dt1(Priority::urgent, FfBench::kPeersAddress,
-                                     fieldbus_dll::address_of(another, 1), bench_.numbered_data(4)),
-                          later));
+    model_.hear_data(say(bench_.dt1(Priority::urgent, FfBench::kPeersAddress,
+                                    fieldbus_dll::address_of(another, 1), bench_.numbered_data(4)),
+                         later));
   }
 
   // ---- other schedulers ----
@@ -346,9 +359,9 @@ class FfLasSequenceRun {
   void say_as_scheduler(const Octets& octets) {
     bench_.send(octets);
     model_.hear_scheduler(octets, bench_.now());
-    if (!model_.is_probed()) return;
+    if (!model_.owes_answer()) return;
     if (!bench_.next_begins(bench_.now() + bench_.response_delay() + kLinkRounding))
-      judge_.fail("not_a_device", {{"a PR: it was probed"}, "silence", bench_.now()});
+      judge_.fail("not_a_device", {{"an answer: another scheduler asks it"}, "silence", bench_.now()});
     const DrivenDlpdu one = *bench_.next();
     object(model_.say(one), one.text(), one.begin);
   }
@@ -365,8 +378,19 @@ class FfLasSequenceRun {
     answer(one);
   }
 
+  // A duration of 0 is none, and with it the DLPDU.
+  void pass_none(std::uint8_t node) {
+    bench_.wait(bench_.least_gap());
+    model_.hear_none(bench_.send({bench_.control(bench_.rules().codes.pt, Priority::normal), node, 0, 0}));
+  }
+
   void second(const SequenceCommand& command) {
     const auto kind = static_cast<OtherScheduler>(command.numbers[0]);
+    if (model_.is_scheduler() && kind == OtherScheduler::passes_none) {
+      if (next_that([&](const DrivenDlpdu& one) { return is_cd(bench_, one); }))
+        pass_none(kNodesOfLas.at(static_cast<std::size_t>(command.numbers[1])));
+      return;
+    }
     if (model_.is_scheduler() && kind != OtherScheduler::idles)
       return displace_by([&] { return of_scheduler(kind, command.numbers); });
     displace();
@@ -392,6 +416,10 @@ class FfLasSequenceRun {
         return time_of_second(numbers[2]);
       case OtherScheduler::idles:
         return {codes.idle};
+      case OtherScheduler::passes_none:
+        return {bench_.control(codes.pt, Priority::normal), node, 0, 0};
+      case OtherScheduler::compels_this:
+        return bench_.cd(kOwnBuffersOfLas[node % 2]);
     }
     return {};
   }
@@ -438,20 +466,71 @@ class FfLasSequenceRun {
     is_whole ? model_.hear_scheduler(tl, bench_.now()) : model_.hear_noise(bench_.now());
   }
 
-  void order(std::uint8_t heir, std::int64_t sends) {
-    if (!model_.is_scheduler()) answer(next_said());
+  void order(std::uint8_t heir, HeirSends sends) {
+    if (!model_.is_scheduler() && sends != HeirSends::not_awaited) answer(next_said());
     judge_.expect(bench_.order_transfer(heir), "order_refused", "a link master takes the order",
                   "it is refused");
-    model_.order_transfer(heir);
+    model_.order_transfer(heir, bench_.now());
+    if (sends == HeirSends::not_awaited) return;
     const auto tl = next_that([&](const DrivenDlpdu& one) { return is_of(one, bench_.rules().codes.tl); });
     if (!tl) judge_.fail("not_transferred", {{fmt::format("a TL for {:02X}", heir)}, "none", bench_.now()});
-    if (sends == 0) return;
+    if (sends == HeirSends::nothing) return;
     bench_.wait(bench_.least_gap());
-    say_as_scheduler({bench_.rules().codes.pn, sends == 1 ? kSecondOfLas : bench_.node()});
+    const auto& codes = bench_.rules().codes;
+    if (sends == HeirSends::token_back) return say_as_scheduler({codes.rt});
+    say_as_scheduler({codes.pn, sends == HeirSends::probe ? kSecondOfLas : bench_.node()});
+  }
+
+  // ---- time, entities and the supply ----
+
+  void ask_late(std::int64_t left, bool is_of_another) {
+    const auto pt = next_that([&](const DrivenDlpdu& one) {
+      return is_pt(bench_, one) && tokens_missed_[one.octet(1)] == 0 &&
+             duration_in(one) < bench_.rules().token_holding_octets;
+    });
+    if (!pt) return;
+    const Octets ct{bench_.rules().codes.ct, is_of_another ? kNobody : pt->octet(1)};
+    const kernel::Time last = pt->end + bench_.octets(duration_in(*pt) - left) - bench_.frame(ct.size());
+    if (last < bench_.now() + bench_.least_gap()) return return_token(*pt);
+    // A silence of V(MRD) x V(ST) would be no use of the token.
+    while (last - bench_.now() >= bench_.response_delay()) {
+      const Octets data = bench_.numbered_data(1);
+      const kernel::Time begin = bench_.now() + bench_.least_gap();
+      const kernel::Time end = begin + bench_.frame(data_of(*pt, data).size());
+      if (end + bench_.least_gap() > last) break;
+      data_.push_back(data);
+      model_.hear_data(say(data_of(*pt, data)));
+    }
+    if (last - bench_.now() >= bench_.response_delay()) return return_token(*pt);
+    bench_.run_until(last);
+    bench_.send(ct);
+    model_.hear_time_request(bench_.now());
+  }
+
+  void say_of_entity(const DrivenDlpdu& pt, bool is_for_everybody) {
+    const fieldbus_dll::FfAddress to =
+        is_for_everybody ? fieldbus_dll::kEverybody : fieldbus_dll::address_of(bench_.node());
+    constexpr std::uint8_t kUnknown = 7;
+    const Octets dt1 =
+        bench_.dt1(Priority::urgent, to, fieldbus_dll::address_of(pt.octet(1)), {kUnknown, 1, 2});
+    if (is_in_token(pt, dt1.size())) model_.hear_data(say(dt1));
+    return_token(pt);
+  }
+
+  void lose_supply(std::int64_t octets) {
+    bench_.set_supply(false);
+    judge_.expect(!bench_.next_begins(bench_.now() + bench_.octets(octets)), "says_without_supply",
+                  "nothing without supply", "a DLPDU");
+    bench_.run_until(bench_.now() + bench_.octets(octets));
+    judge_events();
+    bench_.user().events.clear();
+    bench_.set_supply(true);
+    model_.lose_supply(bench_.now());
   }
 
   static constexpr std::uint8_t kSecondOfLas = 0x13;
   static constexpr std::uint8_t kGrantOfSecond = 88;
+  static constexpr std::uint8_t kNobody = 0x77;
 
   FfBench& bench_;
   CaseJudge& judge_;
@@ -459,6 +538,7 @@ class FfLasSequenceRun {
   std::map<std::uint8_t, std::int64_t> tokens_missed_;
   std::set<std::uint8_t> joining_;
   std::vector<Octets> data_;
+  std::int64_t submitted_ = 0;
 };
 
 std::vector<PartialSource> ff_las_sequence_details() {
@@ -470,7 +550,8 @@ std::vector<PartialSource> ff_las_sequence_details() {
       {own("what a scheduler says when"),
        {"does_not_wait", "order_wrong", "begin_not_marked", "token_for_removed",
         "token_shorter_than_the_time", "priority_wrong", "time_request_ignored", "data_not_sent",
-        "sends_other_data", "second_probe", "probes_out_of_order", "time_told_too_often"}});
+        "sends_other_data", "second_probe", "probes_out_of_order", "time_told_too_often", "idle_early",
+        "own_turn_too_long", "over_what_is_due", "says_without_supply"}});
   details.push_back({own("what the user of a scheduler is told"), {"event_wrong"}});
   details.push_back({own("what has changed is sent within two circulations"),
                      {"not_activated", "live_list_not_told", "live_list_wrong"}});
@@ -504,6 +585,14 @@ const SequenceRole& ff_las_sequence_role() {
        {DerivedKind::words, {"reply_missing_of_itself", "event_wrong"}},
        {DerivedKind::words, {"each_event_once", "event_wrong"}},
        {DerivedKind::words, {"data_return_no_token", "event_wrong"}},
+       {DerivedKind::values, {"all_admitted_behind_two_slow", "priority_wrong"}},
+       {DerivedKind::values, {"own_data_newest_first", "sends_other_data"}},
+       {DerivedKind::words, {"own_data_final", "sends_other_data"}},
+       {DerivedKind::words, {"activation_time_available", "not_activated"}},
+       {DerivedKind::states, {"own_item_normal", "own_buffer_wrong"}},
+       {DerivedKind::states, {"live_list_unnumbered", "live_list_wrong"}},
+       {DerivedKind::words, {"not_in_its_live_list", "live_list_wrong"}},
+       {DerivedKind::words, {"idles_early", "idle_early"}},
        {DerivedKind::states, {"steps_back_to_the_extreme", "priority_wrong"}},
        {DerivedKind::repetitions, {"target_ignored", "priority_wrong"}},
        {DerivedKind::settings, {"time_at_half_speed", "time_wrong"}},

@@ -51,13 +51,31 @@ void FfLasModel::leave() {
   }
 }
 
+void FfLasModel::order_transfer(std::uint8_t node, Time now) {
+  if (!is_scheduler_) return;
+  heir_ = node;
+  ordered_ = now;
+}
+
+void FfLasModel::lose_supply(Time now) {
+  FfLasModel anew(configuration_);
+  anew.first_revision_ = first_revision_;
+  anew.first_ticks_ = first_ticks_;
+  anew.silent_since_ = anew.free_since_ = anew.free_latest_ = anew.time_told_ = anew.td_due_ = now;
+  anew.link_time_begin_ = now;
+  *this = std::move(anew);
+}
+
 // Link time goes on; it begins a circulation, and with it what it counts.
 void FfLasModel::take(Time now) {
   is_scheduler_ = true;
-  is_probed_ = false;
+  owed_.reset();
   question_.reset();
-  time_told_ = now;
+  time_told_ = td_due_ = now;
   distributed_.reset();
+  own_turn_.reset();
+  is_item_in_turn_ = false;
+  ++most_changes_;  // itself
   for (unsigned n = 0; n < kNodes; ++n) {
     const auto node = static_cast<std::uint8_t>(n);
     nodes_.at(node).fewest_misses = 0;
@@ -66,7 +84,7 @@ void FfLasModel::take(Time now) {
   last_token_.reset();
   circulation_begin_.reset();
   priority_.reset();
-  probes_ = 0;
+  probes_ = idles_ = 0;
   is_first_circulation_ = true;
   const auto& schedule = configuration_.schedule;
   items_done_ = ticks_at(now) / schedule.macrocycle * schedule.items.size();
@@ -75,7 +93,7 @@ void FfLasModel::take(Time now) {
 
 void FfLasModel::hear_scheduler(const Octets& octets, Time end) {
   silent_since_ = end;
-  is_probed_ = false;
+  owed_.reset();
   const auto dlpdu = ff_dlpdu_of(octets, rules());
   if (!dlpdu) return;
   if (dlpdu->type == FfType::tl && dlpdu->node == configuration_.node) {
@@ -89,25 +107,53 @@ void FfLasModel::hear_scheduler(const Octets& octets, Time end) {
 }
 
 void FfLasModel::learn(const FfDlpdu& dlpdu, Time end) {
+  if (dlpdu.type == FfType::pt && !nodes_.at(dlpdu.node).is_live) ++most_changes_;
   if (dlpdu.type == FfType::pt) nodes_.at(dlpdu.node) = {.is_live = true};
-  if (dlpdu.type == FfType::pn) is_probed_ = dlpdu.node == configuration_.node;
+  if (dlpdu.type == FfType::pn && dlpdu.node == configuration_.node)
+    owed_ = Octets{rules().codes.pr, configuration_.node};
+  if (dlpdu.type == FfType::cd) owe_buffer(dlpdu);
   if (dlpdu.type == FfType::td) {
+    is_new_to_link_time_ = false;
     told_ = Reported{dlpdu.link_time, end};
     link_time_begin_ = end - static_cast<std::int64_t>(dlpdu.link_time) * fieldbus_dll::kTick;
   }
   const bool is_list = dlpdu.type == FfType::dt1 && dlpdu.destination == fieldbus_dll::kEverybody &&
                        dlpdu.data.size() == kLiveListOctets;
+  if (is_list) {
+    revision_ = dlpdu.data[1];
+    fewest_changes_ = most_changes_ = 0;
+  }
   for (unsigned n = 0; is_list && n < kNodes; ++n)
     nodes_.at(n) = {.is_live = (dlpdu.data[2U + n / 8U] >> (7 - n % 8) & 1) != 0};
 }
 
+// Who was the scheduler is live.
+void FfLasModel::owe_buffer(const FfDlpdu& cd) {
+  if (fieldbus_dll::node_of(cd.destination) != configuration_.node) return;
+  const OwnBuffer& own = own_[cd.destination];
+  FfDlpdu answer{.type = FfType::dt3,
+                 .priority = cd.priority,
+                 .has_long_addresses = fieldbus_dll::is_long(cd.destination),
+                 .is_final = true,
+                 .source = cd.destination,
+                 .writes = static_cast<std::uint8_t>(own.writes),
+                 .data = own.data};
+  const bool is_published = std::ranges::count(configuration_.published, cd.destination) > 0;
+  if (own.since == kernel::kNever)
+    answer = {.type = FfType::sr,
+              .is_final = true,
+              .status = is_published ? fieldbus_dll::FfStatus::nothing_written
+                                     : fieldbus_dll::FfStatus::unknown_address};
+  owed_ = octets_of(answer, rules());
+}
+
 FfLasModel::Found FfLasModel::say_in_standby(const DrivenDlpdu& dlpdu) {
   const auto& codes = rules().codes;
-  if (std::exchange(is_probed_, false)) {
+  if (const auto owed = std::exchange(owed_, std::nullopt)) {
     if (dlpdu.begin + kLinkRounding < silent_since_ + times(rules().link.inter_pdu_delay_octets))
       return LinkObjection{"answers_too_early", "V(MID) of silence in front of each DLPDU"};
-    if (dlpdu.octets == Octets{codes.pr, configuration_.node}) return std::nullopt;
-    return LinkObjection{"not_a_device", "a PR: it was probed by the scheduler"};
+    if (dlpdu.octets == *owed) return std::nullopt;
+    return LinkObjection{"not_a_device", "what a device answers: " + words_of(*owed, rules())};
   }
   if (dlpdu.octets != Octets{codes.cl, configuration_.node})
     return LinkObjection{"two_schedulers", "silence, and then a CL: another is the scheduler"};
@@ -130,6 +176,7 @@ FfLasModel::Found FfLasModel::say_transfer(const DrivenDlpdu& tl) {
                      static_cast<std::uint8_t>(version)};
   if (tl.octets != right) return LinkObjection{"not_transferred", fmt::format("a TL for {:02X}", heir)};
   question_ = Question{.node = heir, .asked = Asked::transfers};
+  own_turn_.reset();
   return std::nullopt;
 }
 
@@ -163,7 +210,13 @@ FfLasModel::Found FfLasModel::pass_own_items(const DrivenDlpdu& dlpdu) {
   return std::nullopt;
 }
 
+void FfLasModel::interrupt_own_turn() {
+  is_item_in_turn_ = true;
+  if (own_turn_) own_turn_->is_interrupted = true;
+}
+
 FfLasModel::Found FfLasModel::say_own_buffer(const DrivenDlpdu& dt3) {
+  interrupt_own_turn();
   // Those in front of it that were not written are passed over.
   while (is_own_item_next() && own_[next_item()->address].since > due() && due() <= dt3.begin &&
          next_item()->address != own_address_in(dt3))

@@ -28,6 +28,7 @@ constexpr std::int64_t kMostJump = 0x2'0000'0000;
 constexpr std::array<std::int64_t, 12> kLasJumps{
     0, 1, 2, 330, 1'234, 3'300, 6'399, 40'000, kMostJump, 0xFFFF'C000, 0xFFFF'8000, 0xFFFF'0000};
 constexpr std::array<std::int64_t, 3> kLasVersions{0, 0, 1};
+constexpr std::array<std::int64_t, 6> kLasLeft{0, 4, 12, 19, 20, 28};
 
 SequenceNumber las_item() {
   return {"item", 0, kItemsOfLas.size() - 1, 0};
@@ -80,8 +81,8 @@ void network_of_las(FfConfiguration& configuration) {
                             .items = {{0, kItemsOfLas[0], Priority::normal},
                                       {3'200, kItemsOfLas[1], Priority::urgent},
                                       {3'200, kItemsOfLas[2], Priority::time_available},
-                                      {3'400, kOwnBuffersOfLas[0], Priority::normal},
-                                      {3'400, kOwnBuffersOfLas[1], Priority::normal}}};
+                                      {3'400, kOwnBuffersOfLas[0], Priority::urgent},
+                                      {3'400, kOwnBuffersOfLas[1], Priority::time_available}}};
   configuration.published = {kOwnBuffersOfLas[0], kOwnBuffersOfLas[1]};
 }
 
@@ -105,6 +106,9 @@ std::vector<std::vector<NamedCommand>> states_of_a_master() {
           {displaced, told_time},
           {displaced, {"told", {{"nodes", 6}, {"silence", 4}}}},
           {displaced, {"hand"}},
+          {displaced, {"order", {{"sends", 4}}}},
+          {{"join"}, {"obey", {{"count", 20}}}, {"supply"}},
+          {{"order", {{"sends", 4}}}, displaced},
           {{"order", {{"sends", 0}}}},
           {{"order"}}};
 }
@@ -170,14 +174,16 @@ SequenceVocabulary ff_las_vocabulary() {
             .weight = 4},
            {.word = "order",
             .meaning = "the user orders to hand the link to a node, which is silent (0), probes another (1) "
-                       "or this one (2)",
-            .numbers = {las_node(), {"sends", 0, 2, 1}},
+                       "or this one (2), sends an RT (3); 4: the order is not waited for",
+            .numbers = {las_node(), {"sends", 0, 4, 1}},
             .weight = 3},
            {.word = "second",
-            .meaning = "another scheduler sends 0: CL, 1: PT for a node, 2: PN for it, 3: PN for "
-                       "this one, 4: TD with a jump of link time, 5: CD, 6: IDLE; in standby after "
-                       "so many 32nds of the silence that claims the link, 32: an octet less",
-            .numbers = {{"kind", 0, 6, 0}, las_node(), {"jump", 0, kMostJump, 0, kLasJumps}, las_parts()},
+            .meaning =
+                "another scheduler sends 0: CL, 1: PT for a node, 2: PN for it, 3: PN for "
+                "this one, 4: TD with a jump of link time, 5: CD, 6: IDLE, 7: PT with a duration of 0, "
+                "8: CD for a buffer of this one; in standby after "
+                "so many 32nds of the silence that claims the link, 32: an octet less",
+            .numbers = {{"kind", 0, 8, 0}, las_node(), {"jump", 0, kMostJump, 0, kLasJumps}, las_parts()},
             .weight = 5},
            {.word = "told",
             .meaning = "another scheduler tells which of the nodes are live, a bit each",
@@ -193,7 +199,27 @@ SequenceVocabulary ff_las_vocabulary() {
                        "schedule (0) or so many versions later",
             .numbers = {{"to", 0, 1, 0}, {"version", 0, 0xFFFF, 0, kLasVersions}, las_parts()},
             .units = 8,
-            .weight = 6}},
+            .weight = 6},
+           {.word = "flood",
+            .meaning = "the user submits so many data at once",
+            .numbers = {{"priority", 1, 3, 3}, {"count", 2, 12, 6}, {"size", 0, 64, 64, kLasSizes}},
+            .weight = 3},
+           {.word = "ask_late",
+            .meaning =
+                "the time is asked for, for a node that is live or for another, so many octets before the "
+                "end of the next token that an item cuts",
+            .numbers = {{"left", 0, 40, 12, kLasLeft}, {"other", 0, 1, 0}},
+            .weight = 3},
+           {.word = "entity",
+            .meaning =
+                "under the next token the holder's entity sends what no entity knows, to this one's or "
+                "to everybody's",
+            .numbers = {{"everybody", 0, 1, 0}},
+            .weight = 2},
+           {.word = "supply",
+            .meaning = "the supply goes, and comes after so many octet durations",
+            .numbers = {{"octets", 1, 400, 20}},
+            .weight = 1}},
       .unit = "octet",
       .levels_per_unit = kFlipsOfAnOctet,
       .settings = sequence_settings(fieldbus_dll::kFfTable, &as_given, kFixedOfLink, kBoundsOfLas),

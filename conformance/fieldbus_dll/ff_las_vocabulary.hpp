@@ -35,11 +35,30 @@ enum class LasWord : std::uint8_t {
   second,
   told,
   noise,
-  hand
+  hand,
+  flood,
+  ask_late,
+  entity,
+  supply
 };
 
-// What another scheduler says: the last two by an entity, or by nobody that is one.
-enum class OtherScheduler : std::uint8_t { claims, passes, probes, probes_this, tells_time, compels, idles };
+// What another scheduler says: an IDLE by an entity, or by nobody that is one; a PT with a duration of 0,
+// which is none.
+enum class OtherScheduler : std::uint8_t {
+  claims,
+  passes,
+  probes,
+  probes_this,
+  tells_time,
+  compels,
+  idles,
+  passes_none,
+  compels_this
+};
+
+// Who is ordered to be the heir sends nothing, something of a scheduler, something of a device; or the order
+// is not waited for.
+enum class HeirSends : std::uint8_t { nothing, probe, probe_of_this, token_back, not_awaited };
 
 // When it is said in standby: so many 32nds of the silence that claims the link, or an octet before its end.
 inline constexpr std::int64_t kPartsOfClaim = 32;

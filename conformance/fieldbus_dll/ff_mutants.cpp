@@ -333,9 +333,11 @@ std::vector<FfRow> ff_circulation_rows() {
   using namespace ff_seeded_faults;
   return {
       {"descending_order", "", "passes the token in descending order",
-       mutant<PassesOtherwise>(+[](FfDlpdu& pt) { pt.node = static_cast<std::uint8_t>(0x25 - pt.node); })},
+       mutant<SaysOtherwise>(
+           FfType::pt, +[](FfDlpdu& pt) { pt.node = static_cast<std::uint8_t>(0x25 - pt.node); })},
       {"begin_not_marked", "", "does not mark the first token of a circulation",
-       mutant<PassesOtherwise>(+[](FfDlpdu& pt) { pt.begins_circulation = false; })},
+       mutant<SaysOtherwise>(
+           FfType::pt, +[](FfDlpdu& pt) { pt.begins_circulation = false; })},
       {"probes_unpolled", "FF-10", "probes all addresses", mutant<ProbesUnpolled>()},
       {"probes_live_nodes", "", "probes live nodes, too", mutant<ProbesOtherwise>(1, true)},
       {"probes_descending", "", "probes in descending order", mutant<ProbesOtherwise>(-1, false)},
@@ -427,10 +429,30 @@ std::vector<FfRow> ff_claim_rows() {
 // Of derived sequences.
 std::vector<FfRow> ff_las_told_rows() {
   using namespace ff_seeded_faults;
-  return {{"reply_missing_of_itself", "", "reports its own node where a publisher did not reply",
-           mutant<EventsOfItself>()},
-          {"each_event_once", "", "reports each kind of event once", mutant<EachEventOnce>()},
-          {"data_return_no_token", "", "takes F in a DT1 for nothing", mutant<DataReturnNoToken>()}};
+  return {
+      {"reply_missing_of_itself", "", "reports its own node where a publisher did not reply",
+       mutant<EventsOfItself>()},
+      {"each_event_once", "", "reports each kind of event once", mutant<EachEventOnce>()},
+      {"data_return_no_token", "", "takes F in a DT1 for nothing", mutant<DataReturnNoToken>()},
+      {"all_admitted_behind_two_slow", "", "admits all data at once after two slow rotations",
+       mutant<AllAdmittedBehindTwoSlow>()},
+      {"own_data_newest_first", "", "sends what its user submitted last", mutant<NewestFirst<FfLas>>()},
+      {"own_data_final", "", "sets F in data of its own user",
+       mutant<SaysOtherwise>(
+           FfType::dt1, +[](FfDlpdu& dt1) { dt1.is_final = !is_of_entity(dt1); })},
+      {"activation_time_available", "", "activates with the lowest priority",
+       mutant<SaysOtherwise>(
+           FfType::dt1,
+           +[](FfDlpdu& dt1) {
+             if (is_of_entity(dt1) && dt1.destination != fieldbus_dll::kEverybody)
+               dt1.priority = Priority::time_available;
+           })},
+      {"own_item_normal", "", "publishes its own buffers with normal priority",
+       mutant<SaysOtherwise>(
+           FfType::dt3, +[](FfDlpdu& dt3) { dt3.priority = Priority::normal; })},
+      {"live_list_unnumbered", "", "sends revision 0 of the live list always", mutant<LiveListUnnumbered>()},
+      {"not_in_its_live_list", "", "leaves itself out of the live list", mutant<NotInItsLiveList>()},
+      {"idles_early", "", "sends an IDLE after five slot times", mutant<IdlesEarly>()}};
 }
 
 std::vector<FfRow> ff_las_sequence_rows() {
@@ -452,11 +474,8 @@ std::vector<FfRow> ff_las_sequence_rows() {
       {"only_first_change_told", "", "sends the live list once", mutant<OnlyFirstChangeTold>()},
       {"unanswered_item_dropped", "", "compels no more what was not answered twice",
        mutant<UnansweredItemDropped>()},
-      {"all_admitted_behind_two_slow", "", "admits all data at once after two slow rotations",
-       mutant<AllAdmittedBehindTwoSlow>()},
       {"second_time_request_ignored", "", "sends the time to who asks once",
        mutant<SecondTimeRequestIgnored>()},
-      {"own_data_newest_first", "", "sends what its user submitted last", mutant<NewestFirst<FfLas>>()},
   });
 }
 
