@@ -146,6 +146,10 @@ void expect_transfer_made(FfScene& scene) {
   for (;;) {
     scene.answer = expect_next(scene.bench, scene.judge, latest, "not_transferred", "a TL for 15");
     if (scene.answer.octets == transfer_to(scene.bench, 0x15)) return;
+    scene.judge.expect(!is_of(scene.answer, scene.bench.rules().codes.tl), "not_transferred", [&] {
+      return Mismatch{
+          {"a TL for 15 with the version of its schedule"}, scene.answer.text(), scene.answer.begin};
+    });
     scene.bench.answer_one(scene.answer);
   }
 }

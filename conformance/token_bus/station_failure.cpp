@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "conformance/token_bus/station_life.hpp"
+#include "conformance/token_bus/station_visits.hpp"
 
 // What a station does when the token that it passes is not taken, or when it is not alone in holding one.
 namespace fieldproof::conformance {
@@ -35,6 +36,19 @@ unsigned all_but_one(const token_bus::Rules& rules) {
 }
 unsigned one_time(const token_bus::Rules&) {
   return 1;
+}
+
+// It answers 000E, and gets the token.
+TokenStep joins() {
+  return stimulus<TokenScene>(
+      "000E solicits the station, which answers, and passes the token to it", [](TokenScene& scene) {
+        scene.bench.wait(scene.bench.octets(8));
+        scene.send(scene.bench.frame(TokenControl::solicit_1, TokenBench::kBelow, TokenBench::kAbove));
+        scene.expect_frame({TokenControl::set_successor, TokenBench::kAbove}, scene.at_once(), "its answer",
+                           "answer_missing", "answer_wrong");
+        scene.bench.wait(scene.bench.octets(6));
+        scene.send(scene.bench.frame(TokenControl::token, scene.bench.address(), TokenBench::kAbove));
+      });
 }
 
 TokenStep is_offline() {
@@ -212,6 +226,26 @@ std::vector<TokenCase> token_failure_cases() {
                           joined()},
                          becomes_faulty())},
                {.adjust = fault_limit<3>}),
+      on_chart(token_must("failure/a_repetition_that_is_taken_forgives_them", "",
+                          "A pass that succeeds when the token is repeated is a success.",
+                          memory("transmitter_fault_count"), {{"failures_not_forgiven", "answer_missing"}}),
+               {{},
+                and_then({fails_to_pass("as often as the limit of failures says, but once", all_but_one),
+                          joins(), passes_below(at_once()), passes_below(after_slots(1)), taken()},
+                         becomes_faulty())},
+               {.adjust = fault_limit<3>}),
+      on_chart(
+          token_must("failure/what_waits_outlasts_a_failure", "TB-21",
+                     "Data that wait when no successor is found are sent when the station has joined again.",
+                     standard("token pass failure"), {{"failure_drops_data", "data_missing"}}),
+          {{},
+           {submit({0}, 10), fails_to_pass("with its first token, under which class 0 has no time", one_time),
+            joins(), sends("the data of class 0", {0}, "speaks_unasked", "data_missing")}}),
+      on_chart(
+          token_must("failure/who_begins_in_the_gap_is_waited_for", "TB-21",
+                     "A station that is about to send waits for who begins within the gap, and a gap more.",
+                     token_sources::own("the gap"), {{"begins_after_four_octets", "begins_too_early"}}),
+          {{4, 40}, {joined(), token(), wait(4), noise(10), passes_below(at_once()), taken()}}),
       on_chart(token_must("failure/the_second_of_an_address_is_silent", "TB-29",
                           "A station that receives a frame with its own address as the source reports it and "
                           "goes offline.",

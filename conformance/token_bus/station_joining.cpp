@@ -155,6 +155,16 @@ std::vector<TokenCase> token_joining_cases() {
                       "token_missing", "token_wrong"),
                  reported("that it has joined", token_bus::EventKind::joined, TokenBench::kAbove)}}),
       on_chart(
+          token_must("joining/noise_is_no_reason_to_wait_longer", "TB-16",
+                     "Who has answered and gets no token within demand_wait_slots has not been solicited, "
+                     "whatever noise there was: a later token comes from its successor.",
+                     token_sources::own("demand_wait_slots"), {{"offer_kept", "token_wrong"}}),
+          {{},
+           {wait(10), solicited(), answers(TokenBench::kAbove, at_once()), wait(60), noise(6), wait(70),
+            token(),
+            says("the token to 000E, who has sent it", {TokenControl::token, TokenBench::kAbove}, at_once(),
+                 "token_missing", "token_wrong")}}),
+      on_chart(
           token_must("joining/answers_for_its_predecessor", "TB-23",
                      "When a token passer asks who follows a station, the one whose predecessor that is "
                      "answers, and contends as any that has answered; nobody else does.",

@@ -181,6 +181,14 @@ class UrgentDataOnlyJoin : public TokenStation {
   bool set_;
 };
 
+class FailureDropsData : public TokenStation {
+  using TokenStation::TokenStation;
+  void on_pass_failed(kernel::Time now) override {
+    drop_data();
+    TokenStation::on_pass_failed(now);
+  }
+};
+
 class OfferKept : public TokenStation {
   using TokenStation::TokenStation;
   bool forgets_offer() const override { return false; }

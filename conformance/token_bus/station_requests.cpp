@@ -61,6 +61,17 @@ TokenStep no_response_comes() {
       });
 }
 
+// The first of two.
+void requested_in_vain(TokenScene& scene) {
+  for (unsigned n = 0; n <= scene.bench.rules().max_retry_limit; ++n) {
+    scene.expect_frame({TokenControl{kRequestOfSix}, TokenBench::kBelow},
+                       n == 0 ? scene.at_once() : scene.after_slots(scene.bench.rules().response_wait_slots),
+                       "the first request", "request_missing", "request_wrong");
+    scene.judge.expect(scene.answer.data() == scene.first, "request_wrong", "the data of the first request",
+                       scene.answer.text());
+  }
+}
+
 std::vector<TokenStep> asked() {
   return {request(), token(), is_requested(at_once())};
 }
@@ -100,6 +111,23 @@ std::vector<TokenCase> token_request_cases() {
                                                                        token_bus::EventKind::response_missing,
                                                                        TokenBench::kBelow),
                                                         taken()}))}}),
+      on_chart(
+          token_must("requests/each_of_two_has_its_repetitions", "TB-27",
+                     "Of two requests under one token each is repeated as often as max_retry_limit says.",
+                     mib("max_retry_limit"),
+                     {{"no_repetition", "request_wrong"}, {"one_repetition_more", "request_wrong"}}),
+          {{},
+           {joined(), request(),
+            stimulus<TokenScene>("and another one",
+                                 [](TokenScene& scene) {
+                                   scene.first = scene.data;
+                                   scene.data = scene.bench.numbered_data(4);
+                                   scene.bench.submit({.action = token_bus::Action::request_with_response,
+                                                       .destination = TokenBench::kBelow,
+                                                       .data = scene.data});
+                                 }),
+            token(), expected<TokenScene>("the first one, and its repetitions", requested_in_vain),
+            is_requested(after_slots(3)), request_repeated(), taken()}}),
       on_chart(token_must("requests/after_a_missing_response_the_token_is_used", "TB-27",
                           "When the repetitions of a request are used up, the token is used for other data.",
                           mib("max_retry_limit"), {{"missing_response_ends_its_use", "data_missing"}}),

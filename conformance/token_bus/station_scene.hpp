@@ -69,6 +69,7 @@ struct TokenScene : Scene<TokenBench> {
   kernel::Time since;               // the end of what was on the line last
   DrivenFrame answer{};             // what the IUT drove last, of what was required
   Octets data{};                    // of the last frame with data, of either side
+  Octets first{};                   // of the first of two that wait
   std::vector<Octets> submitted{};  // by `submit`, in their order
   kernel::Time token_came{};        // the last one whose rotation is measured
   unsigned turn = 0;                // of steps that are repeated

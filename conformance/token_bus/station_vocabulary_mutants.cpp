@@ -98,6 +98,7 @@ std::vector<TokenMutants::Row> token_partial_rows() {
       {"answers_after_leaving", "", "answers solicitations after it has left",
        mutant<WantsRingAlso>(&after_leaving)},
       {"urgent_data_only_join", "", "joins or stays for data of class 6 only", mutant<UrgentDataOnlyJoin>()},
+      {"failure_drops_data", "", "forgets what waits when it finds no successor", mutant<FailureDropsData>()},
       {"offer_kept", "", "keeps the successor of an answer that was for nothing", mutant<OfferKept>()},
       {"member_takes_the_offer", "", "takes the successor of a solicitation as a member",
        mutant<MemberTakesOffer>()},

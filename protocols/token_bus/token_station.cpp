@@ -80,7 +80,7 @@ bool TokenStation::start(kernel::Time now) {
 
 void TokenStation::stop(kernel::Time) {
   go_offline();
-  for (auto& queue : queues_) queue.clear();
+  drop_data();
   response_.reset();
   is_desired_ = configuration_.in_ring_desired;
 }

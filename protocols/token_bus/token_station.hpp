@@ -144,9 +144,13 @@ class TokenStation : public StationDevice {
   virtual Address answered_with() const { return address(); }
   virtual unsigned windows_of(FrameKind kind) const;
   virtual bool forgives_failures() const { return true; }
+  virtual void on_pass_failed(Time now);
   virtual bool takes_successor(const Frame& frame) const { return frame.destination == address(); }
 
   unsigned contest_bits(unsigned pass);
+  void drop_data() {
+    for (auto& queue : queues_) queue.clear();
+  }
   Duration residual(unsigned place, Time now) const { return rotation_until_.at(place) - now; }
   void reload(unsigned place, Time now);
   Time hold_until() const { return hold_until_; }
@@ -211,7 +215,6 @@ class TokenStation : public StationDevice {
   void on_contention(Time end);
   void on_window_over(Time now);
   void on_pass_success(const Frame& frame, Time end);
-  void on_pass_failed(Time now);
 
   StationConfiguration configuration_;
   LineSide line_;
