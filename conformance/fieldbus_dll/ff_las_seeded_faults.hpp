@@ -142,8 +142,8 @@ class ProbesUnpolled : public FfLas {
     std::uint8_t node = last;
     do {
       node = node == rules().last_node ? rules().first_node : static_cast<std::uint8_t>(node + 1);
-    } while (live()[node]);
-    return node;
+    } while (live()[node] && node != last);
+    return live()[node] ? this->node() : node;
   }
 };
 
