@@ -83,13 +83,16 @@ void polled_are(FfConfiguration& configuration) {
 
 void expect_probes_of(FfScene& scene, std::initializer_list<int> wanted) {
   auto next = wanted.begin();
+  std::size_t probes = 0;
   for (const DrivenDlpdu& one : scene.driven) {
     if (!is_of(one, scene.bench.rules().codes.pn)) continue;
     scene.judge.expect(one.octet(1) == *next, "probes_out_of_order", [&] {
       return Mismatch{{fmt::format("PN for node {:02X}", *next)}, one.text(), one.begin};
     });
     if (++next == wanted.end()) next = wanted.begin();
+    ++probes;
   }
+  scene.judge.expect(probes > wanted.size(), "no_probe", "PNs, again and again", fmt::format("{}", probes));
 }
 
 // With nobody to probe.
