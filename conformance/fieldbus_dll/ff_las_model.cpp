@@ -245,7 +245,7 @@ FfLasModel::Found FfLasModel::check_own_turn(const DrivenDlpdu& next) const {
   const auto& queue = queues_.at(static_cast<std::size_t>(Priority::urgent));
   if (!own_turn_ || own_turn_->is_interrupted || queue.empty()) return std::nullopt;
   const Time end = next.begin + frame_time(rules().link, kOctetsAroundData + queue.front().size());
-  const Time over = own_turn_->begin + times(rules().token_holding_octets);
+  const Time over = turn_since_ + times(rules().token_holding_octets);
   if (end + times(2) > over || !leaves_time(end, 2)) return std::nullopt;
   return LinkObjection{"data_not_sent", "more urgent data of its user: they have time within V(DTHT)"};
 }

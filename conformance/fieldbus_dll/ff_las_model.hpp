@@ -218,7 +218,7 @@ class FfLasModel {
     bool is_interrupted = false;
   };
   std::optional<OwnTurn> own_turn_;
-  bool is_item_in_turn_ = false;  // since the last PN: its turn may have begun before
+  kernel::Time turn_since_ = kernel::kStart;  // it may have begun, though nothing of it was said
 
   // What its supply begins with, whenever that comes.
   std::optional<std::uint8_t> first_revision_;

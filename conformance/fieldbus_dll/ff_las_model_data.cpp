@@ -111,8 +111,7 @@ FfLasModel::Found FfLasModel::check_revision(std::uint8_t said) {
 }
 
 FfLasModel::Found FfLasModel::say_of_user(const DrivenDlpdu& dt1, const Octets& data) {
-  if (!own_turn_)
-    own_turn_ = OwnTurn{.begin = dt1.begin, .lowest = Priority::urgent, .is_interrupted = is_item_in_turn_};
+  if (!own_turn_) own_turn_ = OwnTurn{.begin = dt1.begin, .lowest = Priority::urgent};
   own_turn_->lowest = std::min(own_turn_->lowest, priority_said(dt1));
   if (dt1.end > own_turn_->begin + times(rules().token_holding_octets) + kLinkRounding)
     return LinkObjection{"own_turn_too_long", "its own turn ends within V(DTHT)"};

@@ -156,7 +156,7 @@ FfLasModel::Found FfLasModel::say_probe(const DrivenDlpdu& pn) {
   const std::uint8_t node = pn.octet(1);
   if (Found cut = check_own_turn(pn)) return cut;
   own_turn_.reset();
-  is_item_in_turn_ = false;
+  turn_since_ = pn.end;
   if (!is_polled(node)) return LinkObjection{"probes_unpolled", "a PN for an address that may be polled"};
   if (node == configuration_.node || is_surely_live(node))
     return LinkObjection{"probes_live_node", "a PN for a node that is not live"};

@@ -61,7 +61,8 @@ void FfLasModel::lose_supply(Time now) {
   FfLasModel anew(configuration_);
   anew.first_revision_ = first_revision_;
   anew.first_ticks_ = first_ticks_;
-  anew.silent_since_ = anew.free_since_ = anew.free_latest_ = anew.time_told_ = anew.td_due_ = now;
+  anew.silent_since_ = anew.free_since_ = anew.free_latest_ = anew.time_told_ = anew.td_due_ =
+      anew.turn_since_ = now;
   anew.link_time_begin_ = now;
   *this = std::move(anew);
 }
@@ -74,7 +75,7 @@ void FfLasModel::take(Time now) {
   time_told_ = td_due_ = now;
   distributed_.reset();
   own_turn_.reset();
-  is_item_in_turn_ = false;
+  turn_since_ = now;
   ++most_changes_;  // itself
   for (unsigned n = 0; n < kNodes; ++n) {
     const auto node = static_cast<std::uint8_t>(n);
@@ -211,7 +212,6 @@ FfLasModel::Found FfLasModel::pass_own_items(const DrivenDlpdu& dlpdu) {
 }
 
 void FfLasModel::interrupt_own_turn() {
-  is_item_in_turn_ = true;
   if (own_turn_) own_turn_->is_interrupted = true;
 }
 
