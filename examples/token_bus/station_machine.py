@@ -84,8 +84,6 @@ class Machine(StationLine):
     def take_noise(self):
         if self.state in (State.CLAIM_TOKEN, State.DEMAND_DELAY):
             self.go_idle()
-        elif self.state == State.DEMAND_IN:
-            self.wait_slots(self.s["demand_wait_slots"], self.go_idle)
         elif self.state == State.AWAIT_RESPONSE:
             self.resolve()
         elif self.state == State.CHECK_TOKEN_PASS and self.noise_followed:
