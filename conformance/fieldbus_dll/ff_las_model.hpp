@@ -15,22 +15,27 @@
 // others answered and what its user wants: a model of the rules that shares nothing with the stations but
 // their numbers. Nothing is heard while it speaks.
 //
-//   its own buffer, once it was written, when its item is due; a TL when its user orders it
-//   V(MID) of silence in front of each DLPDU, and never a silence of V(ST) x 16
-//   nothing while a token, a CD or a probe is out: until it is answered, the line was silent for V(MRD) x
+// - its own buffer, once it was written, when its item is due; a TL when its user orders it
+// - V(MID) of silence in front of each DLPDU, and never a silence of V(ST) x 16; an IDLE where nobody is to
+// be
+//   probed, else after V(ST) x 8
+// - nothing while a token, a CD or a probe is out: until it is answered, the line was silent for V(MRD) x
 //   V(ST), or the token is over
-//   each item of the schedule in its order, not before it is due, and before all else when it is; at most
+// - each item of the schedule in its order, not before it is due, and before all else when it is; at most
 //   V(MSO) after the instant at which the line is free, and who holds a token too long has had a V(ST) more
-//   tokens from V(DMDT) to V(DTHT) that end before the next item, once in a circulation to each live node,
-//   in the order of addresses, the first one marked, with the priority that the rotations before lead to
-//   between two circulations a probe, ascending, of nodes that are not live and may be polled
-//   who misses so many tokens in a row is not live any more; who answers a probe is, from the next
-//   circulation on; both is told within two circulations link time goes on in what is told of it, once in
-//   V(TDP) and to who asks
+// - all else ends, with what belongs to it, V(MSO) and V(MID) before the next item: TD when it is due, what
+//   its entity sends, a TL, the circulation, in this order
+// - tokens from V(DMDT) to V(DTHT), once in a circulation to each live node, in the order of addresses, the
+//   first one marked, with the priority that the rotations before lead to
+// - in its own turn DT1s without F, within V(DTHT), all that is urgent and has time
+// - between two circulations a probe, ascending, of nodes that are not live and may be polled
+// - who misses so many tokens in a row is not live any more; who answers a probe is, from the next
+//   circulation on; both is told within two circulations, in lists that are numbered
+// - link time goes on in what is told of it, once in V(TDP) and to who asks
 //
-// Who hears a CD, PT, PN, TD, CL or TL of another, or anything behind its own TL, is silent, but for PR: in
-// standby. After V(ST) x V(TN) of silence it claims the link, and by a TL for it and its schedule it gets it.
-// It has learnt link time and who is live then.
+// Who hears a CD, PT, PN, TD, CL or TL of another, or anything behind its own TL, is silent in
+// standby, but for what a device answers. After V(ST) x V(TN) of silence it claims the link, and by a TL for
+// it and its schedule it gets it. It has learnt link time and who is live then.
 //
 // A faulty answer may be taken for an answer or for none; the model holds the scheduler to neither, until it
 // shows which.
@@ -189,8 +194,7 @@ class FfLasModel {
   bool are_events_certain_ = true;
   bool is_asked_for_time_ = false;
   kernel::Time time_told_ = kernel::kStart;
-  std::optional<kernel::Time> distributed_;  // that time, since it is the scheduler
-  kernel::Time td_due_ = kernel::kStart;
+  kernel::Time td_due_ = kernel::kStart;  // answers to CTs do not count
   std::optional<Reported> told_;
   std::size_t items_done_ = 0;
   kernel::Time link_time_begin_ = kernel::kStart;

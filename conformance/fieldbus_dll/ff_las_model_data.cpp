@@ -21,12 +21,9 @@ using kernel::Duration;
 
 FfLasModel::Found FfLasModel::say_time(const DrivenDlpdu& td, bool is_answer) {
   const Duration period = rules().time_distribution_period * 9 / 10;
-  if (!is_answer && distributed_ && td.begin + times(1) < *distributed_ + period)
+  if (!is_answer && td.begin + times(1) < td_due_)
     return LinkObjection{"time_told_too_often", "a TD when 0.9 x V(TDP) have passed, or for who asks"};
-  if (!is_answer) {
-    distributed_ = td.begin;
-    td_due_ = td.begin + period;
-  }
+  if (!is_answer) td_due_ = td.begin + period;
   std::uint64_t ticks = 0;
   for (std::size_t n = 1; n <= 6; ++n) ticks = ticks << 8 | td.octet(n);
   const auto last = std::exchange(told_, Reported{ticks, td.end});

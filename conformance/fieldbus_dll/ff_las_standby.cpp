@@ -73,7 +73,6 @@ void FfLasModel::take(Time now) {
   owed_.reset();
   question_.reset();
   time_told_ = td_due_ = now;
-  distributed_.reset();
   own_turn_.reset();
   turn_since_ = now;
   ++most_changes_;  // itself
