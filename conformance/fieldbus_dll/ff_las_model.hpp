@@ -16,9 +16,8 @@
 // their numbers. Nothing is heard while it speaks.
 //
 // - its own buffer, once it was written, when its item is due; a TL when its user orders it
-// - V(MID) of silence in front of each DLPDU, and never a silence of V(ST) x 16; an IDLE where nobody is to
-// be
-//   probed, else after V(ST) x 8
+// - V(MID) of silence in front of each DLPDU, and never a silence of V(ST) x 16
+// - an IDLE where nobody is to be probed, else after V(ST) x 8 of silence
 // - nothing while a token, a CD or a probe is out: until it is answered, the line was silent for V(MRD) x
 //   V(ST), or the token is over
 // - each item of the schedule in its order, not before it is due, and before all else when it is; at most
