@@ -8,6 +8,7 @@
 
 #include "conformance/chart.hpp"
 #include "conformance/fieldbus_dll/link_expect.hpp"
+#include "conformance/user_reports.hpp"
 
 // The words of charts that the profiles of the data link share: what the user submits and the tester sends,
 // what is said under a token, in answer, or not at all. Reason codes are those of the expectations.
@@ -92,7 +93,12 @@ ChartStep<Scene> answer(const std::string& what, std::string reason,
 template <typename Scene>
 ChartStep<Scene> require_of(const std::string& text, std::function<bool(Scene&)> holds, std::string reason) {
   return expected<Scene>(text, [text, holds = std::move(holds), reason = std::move(reason)](Scene& scene) {
-    scene.judge.expect(holds(scene), reason, text, "it is otherwise");
+    scene.judge.expect(holds(scene), reason, [&] {
+      const auto& reports = scene.bench.user().reports;
+      return Mismatch{{text}, "it is otherwise; its user got " + reports_text(reports, [](const auto& one) {
+                                return one.text();
+                              })};
+    });
   });
 }
 // What the text says holds of the scene.

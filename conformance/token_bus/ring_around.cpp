@@ -19,12 +19,15 @@ void RingAround::settle() {
   constexpr unsigned kMostWindows = 2;
   kernel::Duration silence = quiet();
   unsigned windows = 0;
+  bool is_in_windows = false;
   is_alone_ = false;
   for (unsigned n = 0; n < kMostFrames && windows < kMostWindows; ++n) {
     const auto one = bench_.next(bench_.now() + silence);
     if (one) {
+      // Only the next frame shows that the windows before it passed in silence.
+      windows = is_in_windows ? windows + 1 : 0;
       const bool is_replied_to = tester_.reply_to(*one);
-      if (one->is(TokenControl::solicit_2) && !is_replied_to) ++windows;
+      is_in_windows = one->is(TokenControl::solicit_2) && !is_replied_to;
       continue;
     }
     twin_.catch_up(bench_.now());

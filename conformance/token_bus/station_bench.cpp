@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "conformance/user_reports.hpp"
 #include "harness/line/frame_check.hpp"
 #include "protocols/token_bus/station_settings.hpp"
 
@@ -44,6 +45,16 @@ bool is_reported_as(const DrivenFrame& sent, const token_bus::Frame& frame) {
 bool TokenUser::has_event(token_bus::EventKind kind, std::uint64_t about) const {
   return std::ranges::any_of(
       events, [&](const token_bus::Event& one) { return one.kind == kind && one.address == about; });
+}
+
+std::string TokenBench::user_text() const {
+  const std::string events = reports_text(user_.all_events, [&](const TokenUser::Reported& one) {
+    return fmt::format("{} about {}", token_bus::text_of(one.event.kind),
+                       token_bus::text_of(one.event.address, rules()));
+  });
+  const std::string data = reports_text(
+      user_.frames, [&](const token_bus::Frame& one) { return token_bus::describe(one, rules()); });
+  return fmt::format("reported: {}; delivered: {}", events, data);
 }
 
 TokenBench::TokenBench(const token_bus::StationConfiguration& configuration, bool is_powered,

@@ -113,6 +113,8 @@ class TokenBench final : public LineBench {
   const token_bus::StationConfiguration& configuration() const { return configuration_; }
   // The last frames of both, in words.
   std::vector<std::string> decode_lines();
+  // What its user got.
+  std::string user_text() const;
   void finish() { station_->end(); }
   // What it must answer: on an idle bus it claims the token.
   void ask();

@@ -126,6 +126,7 @@ void TokenStation::claim_goes_on(kernel::Time now) {
   if (contest_pass_ == claim_passes()) {
     if (is_alone_after_claim()) successor_ = predecessor_ = address();
     is_in_ring_ = true;
+    offered_successor_.reset();
     report(EventKind::sole_station, address(), now);
     hold_token(now);
     return;

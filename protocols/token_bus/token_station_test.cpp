@@ -414,6 +414,21 @@ TEST_F(OneTokenStation, LeavesByNamingItsSuccessor) {
   EXPECT_EQ(bus_.take(), "");
 }
 
+TEST_F(OneTokenStation, AClaimForgetsTheSolicitationThatWasAnswered) {
+  bus_.drive(control(solicit_successor_1, kNext, kPrevious));
+  bus_.wait(6 + 17 + 6);
+  bus_.drive(control(token, kNext, kPrevious));
+  bus_.wait_slots(100);
+  EXPECT_TRUE(station_.is_in_ring());
+  station_.set_in_ring_desired(false, bus_.now());
+  bus_.wait_slots(10);
+  EXPECT_FALSE(station_.is_in_ring());
+  station_.set_in_ring_desired(true, bus_.now());
+  bus_.drive(control(token, kOwn, kPrevious));
+  EXPECT_TRUE(station_.is_in_ring());
+  EXPECT_EQ(station_.successor(), kPrevious);
+}
+
 TEST_F(OneTokenStation, CountsFaultyReceptions) {
   const Rules rules;
   const Octets good = with_check(octets_of(control(token, kOwn, kPrevious), rules));
