@@ -256,12 +256,14 @@ std::optional<HostFrame> HostBench::next_frame(kernel::Duration within) {
 
 HostFrame HostBench::frame_of(Transmission sent) {
   HostFrame frame{std::move(sent), {}, {}, kernel::Duration::max()};
-  const auto& characters = frame.sent.characters;
-  frame.start = characters.empty() ? frame.sent.driver_on : characters.front().start;
-  frame.end = characters.empty() ? frame.sent.driver_off : characters.back().busy_until;
+  const auto& all = frame.sent.characters;
+  frame.start = all.empty() ? frame.sent.driver_on : all.front().start;
+  frame.end = all.empty() ? frame.sent.driver_off : all.back().busy_until;
   frame.silence = frame.start - last_end_;
+  // Who receives characters knows of one when it is over.
+  const kernel::Time known = frame.sent.driver_on - characters(1);
   for (const Span& span : said_) {
-    if (span.start < frame.start) frame.silence = std::min(frame.silence, frame.start - span.end);
+    if (span.start <= known) frame.silence = std::min(frame.silence, frame.start - span.end);
   }
   std::erase_if(said_, [&](const Span& span) { return span.end < frame.start; });
   return frame;

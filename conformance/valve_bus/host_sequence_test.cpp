@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string_view>
 
 #include "conformance/sequence_check.hpp"
 #include "conformance/valve_bus/host_cases.hpp"
+#include "conformance/valve_bus/host_scene.hpp"
 #include "conformance/valve_bus/host_vocabulary.hpp"
 #include "conformance/valve_bus/suite.hpp"
 #include "harness/kernel/sanitized.hpp"
@@ -58,6 +60,20 @@ TEST(HostSequence, AnOctetIntoTheDriverAccusesNobody) {
   HostSetting setting;
   setting.pics.emplace().declare("dip", std::int64_t{7});
   const judge::CaseResult result = run_on_bench(one, setting);
+  EXPECT_EQ(result.verdict, judge::Verdict::pass) << result.reason;
+}
+
+// A character is known when it is over: what a host sends within its first one breaks no silence.
+TEST(HostBench, ACharacterThatIsNotOverAccusesNobody) {
+  const HostCase one{host_sequence_role().test_case, [](HostBench& bench, CaseJudge& judge) {
+                       bench.wait(bench.time_out());
+                       bench.write_later(octets_for(bench.read_of(1)), bench.characters(0.5));
+                       bench.say(std::array<std::uint8_t, 3>{0x5A, 0xC3, 0x99});
+                       const auto frame = bench.next_frame(bench.time_out());
+                       judge.expect(frame.has_value(), "no_request", "it sends the read", "nothing");
+                       expect_form(bench, judge, *frame);
+                     }};
+  const judge::CaseResult result = run_on_bench(one, HostSetting{});
   EXPECT_EQ(result.verdict, judge::Verdict::pass) << result.reason;
 }
 
