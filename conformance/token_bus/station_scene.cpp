@@ -234,8 +234,7 @@ TokenStep require(std::string text, std::function<bool(TokenScene&)> holds, std:
   std::string expected_text = text;
   return expected<TokenScene>(std::move(expected_text), [text = std::move(text), holds = std::move(holds),
                                                          reason = std::move(reason)](TokenScene& scene) {
-    const bool does_hold = holds(scene);
-    scene.judge.expect(does_hold, reason,
+    scene.judge.expect(holds(scene), reason,
                        [&] { return Mismatch{{text}, "it is otherwise; " + scene.bench.user_text()}; });
   });
 }
