@@ -15,6 +15,10 @@ using valve_bus::HostCounters;
 using valve_bus::HostErrorKind;
 using Octets = std::vector<std::uint8_t>;
 
+HostStep wrong_acknowledge() {
+  return host_chart::answer("the node acknowledges other data", host_chart::written_data(false));
+}
+
 HostStep wrong_check() {
   return host_chart::answer("the node answers with a wrong check", [](HostScene& scene) {
     Octets octets = host_chart::right_octets(scene);
@@ -23,30 +27,22 @@ HostStep wrong_check() {
   });
 }
 
-// A bit of DATA0 is not as it was written; the check fits.
-HostStep wrong_acknowledge() {
-  return host_chart::answer("the node acknowledges other data", [](HostScene& scene) {
-    const valve_bus::Response given{static_cast<std::uint8_t>(scene.command.data0 ^ 0x10),
-                                    scene.command.data1};
-    const auto octets = octets_of(given);
-    return Octets(octets.begin(), octets.end());
-  });
-}
-
-// One after the other, with a silence that ends each.
+// Of three octets and of five by turns, one after the other, with a silence that ends each.
 void say_frames(HostScene& scene, unsigned count) {
   const Octets octets = host_chart::right_octets(scene);
   for (unsigned n = 0; n < count; ++n) {
-    scene.bench.say(octets);
+    Octets frame = octets;
+    if (n % 2 == 1) frame.insert(frame.end(), {octets[0], octets[1]});
+    scene.bench.say(frame);
     scene.bench.wait(scene.bench.characters(6));
   }
 }
 
-void expect_other_after_the_rest(HostScene& scene) {
+void expect_other_after_the_rest(HostScene& scene, HostErrorKind kind) {
   HostBench& bench = scene.bench;
   bench.order(bench.read_of(scene.other));
-  expect_error(bench, scene.judge, {scene.id, HostErrorKind::bad_response});
-  expect_old_if_known(bench, scene.judge, scene.id);
+  expect_error(bench, scene.judge, {scene.command.id, kind});
+  expect_old_if_known(bench, scene.judge, scene.command.id);
   const HostFrame next = expect_request(bench, scene.judge, bench.read_of(scene.other));
   const kernel::Duration least = bench.time_out() + bench.time_out_tolerance() * 4 / 5;
   scene.judge.expect(next.start - scene.poll.end >= least, "rest_too_short", [&] {
@@ -59,6 +55,26 @@ void expect_other_after_the_rest(HostScene& scene) {
   const valve_bus::Response response = bench.random_response();
   bench.answer(response);
   expect_response(bench, scene.judge, scene.other, response);
+}
+
+// How much later is open: at slow rates what came early, and its end, last longer than the time-out.
+void repeated_after_time_out(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  const HostFrame again = expect_retry(bench, scene.judge, scene.request);
+  const kernel::Duration least = bench.time_out() - bench.time_out_tolerance();
+  scene.judge.expect(again.start - scene.request.end >= least, "time_out_too_short", [&] {
+    return Mismatch{
+        {fmt::format("the next attempt {} or more after the one before", kernel::describe(least))},
+        kernel::describe(again.start - scene.request.end),
+        again.start};
+  });
+}
+
+void read_back_in_vain(HostScene& scene) {
+  const auto [id, command, data0, data1] = scene.command;
+  scene.request = expect_request(scene.bench, scene.judge, scene.bench.read_of(id, data0, data1));
+  for (unsigned n = 1; n < scene.bench.rules().read_attempts; ++n)
+    scene.poll = expect_retry(scene.bench, scene.judge, scene.request);
 }
 
 // Where it has been read before, what is known of it follows.
@@ -99,10 +115,12 @@ std::vector<HostCase> cases_of_late_frames() {
                 .reference = own,
                 .tags = {"must", "timing"},
                 .catches = {{"first_late_counted", "counters_wrong"},
+                            {"late_of_three_octets_counted", "counters_wrong"},
                             {"late_counted_for_ever", "counters_wrong"}}},
                {{3, 60},
                 {read(), silent_until_error(),
-                 stimulus("two frames come", [](HostScene& scene) { say_frames(scene, 2); }),
+                 stimulus("two frames come, of three octets and of five",
+                          [](HostScene& scene) { say_frames(scene, 2); }),
                  counted(&HostCounters::late, 2, "late frames"), other_served(),
                  stimulus("another frame comes", [](HostScene& scene) { say_frames(scene, 1); }),
                  counted(&HostCounters::late, 2, "late frames")}}),
@@ -139,23 +157,68 @@ std::vector<HostCase> cases_of_failed_attempts() {
   using namespace host_chart;
   const judge::Reference own = valve_sources::own("time-out and attempts");
   return {
-      on_chart({.id = "valve_bus/host/attempts/rest_follows_wrong_responses",
-                .purpose = "RH-17",
-                .requirement = "The rest of 5 % of the time-out follows the last attempt also when it was "
-                               "answered wrongly.",
+      on_chart(
+          {.id = "valve_bus/host/attempts/rest_follows_wrong_responses",
+           .purpose = "RH-17",
+           .requirement = "The rest of 5 % of the time-out follows the last attempt also when it was "
+                          "answered wrongly.",
+           .reference = own,
+           .tags = {"must", "timing"},
+           .catches = {{"no_rest_behind_wrong", "rest_too_short"}}},
+          {{2, 40},
+           {read(),
+            wrong_check(),
+            polled_again(),
+            wrong_check(),
+            polled_again(),
+            wrong_check(),
+            {"the PC orders a read of another node",
+             "it begins 1.05 times the time-out after the last attempt, less 1 % of it, or later",
+             [](HostScene& scene) { expect_other_after_the_rest(scene, HostErrorKind::bad_response); }}}}),
+      on_chart(
+          {.id = "valve_bus/host/attempts/rest_follows_a_failed_read_back",
+           .purpose = "RH-31",
+           .requirement = "The rest of 5 % of the time-out follows the last attempt also when a write was "
+                          "to be read back.",
+           .reference = own,
+           .tags = {"must", "option", "timing"},
+           .catches = {{"no_rest_behind_read_back", "rest_too_short"}},
+           .not_applicable = for_both(for_switched_power(), for_quick_frames(20))},
+          {{2, 20},
+           {power_cycled(),
+            write(),
+            expected("it is read back, three times as nobody answers", read_back_in_vain),
+            {"the PC orders a read of another node",
+             "it begins 1.05 times the time-out after the last attempt, less 1 % of it, or later",
+             [](HostScene& scene) { expect_other_after_the_rest(scene, HostErrorKind::no_response); }}}},
+          {.acknowledged_writes = false, .verifies_writes = true}),
+      on_chart({.id = "valve_bus/host/attempts/early_response_is_waited_out",
+                .purpose = "RH-10",
+                .requirement = "A response that comes too early is a wrong attempt: the next one begins "
+                               "after the time-out, as after each other.",
                 .reference = own,
                 .tags = {"must", "timing"},
-                .catches = {{"no_rest_behind_wrong", "rest_too_short"}}},
+                .catches = {{"wrong_response_not_waited_out", "time_out_too_short"}}},
                {{2, 40},
                 {read(),
-                 wrong_check(),
-                 polled_again(),
-                 wrong_check(),
-                 polled_again(),
-                 wrong_check(),
-                 {"the PC orders a read of another node",
-                  "it begins 1.05 times the time-out after the last attempt, less 1 % of it, or later",
-                  expect_other_after_the_rest}}}),
+                 answer("the node answers after a character", right_octets,
+                        [](HostScene& scene) { return scene.bench.characters(1); }),
+                 expected("the host polls it again after the time-out, not before", repeated_after_time_out),
+                 response(), reported()}}),
+      on_chart({.id = "valve_bus/host/attempts/repetition_waits_for_silence",
+                .purpose = "RH-30",
+                .requirement = "An attempt that follows octets without end begins 3.5 characters after them.",
+                .reference = own,
+                .tags = {"must", "timing"},
+                .catches = {{"repeats_into_talk", "no_delimiter"}}},
+               {{2, 40},
+                {read(),
+                 answer("octets come for one time-out and a half",
+                        [](HostScene& scene) {
+                          const auto count = scene.bench.time_out() * 3 / 2 / scene.bench.characters(1);
+                          return Octets(static_cast<std::size_t>(count), 0x55);
+                        }),
+                 polled_again(), response(), reported()}}),
       on_chart({.id = "valve_bus/host/attempts/busy_line_leaves_what_was_known",
                 .purpose = "RH-40",
                 .requirement = "A read that finds no silent line fails like any other: what was known of the "

@@ -48,11 +48,12 @@ auto at_exact_instants(std::function<void(HostBench&, CaseJudge&)> procedure) {
 
 const std::vector<HostCase>& host_cases() {
   static const std::vector<HostCase> cases = [] {
-    static constexpr std::array kChapters{
-        host_request_cases, host_response_cases,  host_retry_cases,     host_fifo_cases,
-        host_timing_cases,  host_line_cases,      host_cycle_cases,     host_memory_cases,
-        host_refresh_cases, host_dip_cases,       host_immunity_cases,  host_supply_cases,
-        host_attempt_cases, host_meanwhile_cases, host_endurance_cases, host_corner_cases};
+    static constexpr std::array kChapters{host_request_cases,   host_response_cases,   host_retry_cases,
+                                          host_fifo_cases,      host_timing_cases,     host_line_cases,
+                                          host_cycle_cases,     host_memory_cases,     host_refresh_cases,
+                                          host_dip_cases,       host_immunity_cases,   host_supply_cases,
+                                          host_attempt_cases,   host_kept_write_cases, host_meanwhile_cases,
+                                          host_endurance_cases, host_corner_cases};
     auto all = cases_of<HostCase>(kChapters, host_details());
     for (HostCase& one : all)
       if (needs_exact_instants(one.test_case)) one.procedure = at_exact_instants(std::move(one.procedure));

@@ -30,6 +30,7 @@ std::vector<HostCase> host_immunity_cases();
 std::vector<HostCase> host_supply_cases();
 std::vector<HostCase> host_corner_cases();
 std::vector<HostCase> host_attempt_cases();
+std::vector<HostCase> host_kept_write_cases();
 std::vector<HostCase> host_meanwhile_cases();
 std::vector<HostCase> host_endurance_cases();
 

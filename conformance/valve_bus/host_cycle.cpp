@@ -169,16 +169,6 @@ void expect_written_node_read(HostScene& scene) {
                      "no_verification", "a read of the node that was written to", text_of_command(read));
 }
 
-// What was written, as the node would give it: but for one bit of DATA1 or of DATA0 when it is wrong.
-host_chart::MakeOctets written_data(bool is_right) {
-  return [is_right](HostScene& scene) {
-    Response response{scene.command.data0, scene.command.data1};
-    if (!is_right) (scene.round % 2 == 0 ? response.data1 : response.data0) ^= 1U << scene.round % 8;
-    const auto octets = octets_of(response);
-    return std::vector<std::uint8_t>(octets.begin(), octets.end());
-  };
-}
-
 void expect_write_repeated(HostScene& scene) {
   const auto again = scene.bench.next_frame(scene.bench.time_out() * 2);
   scene.judge.expect(again.has_value(), "no_retry", "a write that is not acknowledged is sent again",

@@ -2,6 +2,7 @@
 
 #include "conformance/valve_bus/character_seeded_faults.hpp"
 #include "conformance/valve_bus/host_application_seeded_faults.hpp"
+#include "conformance/valve_bus/host_keeping_seeded_faults.hpp"
 #include "conformance/valve_bus/host_lasting_seeded_faults.hpp"
 #include "conformance/valve_bus/host_request_seeded_faults.hpp"
 #include "conformance/valve_bus/host_response_seeded_faults.hpp"
@@ -254,6 +255,45 @@ std::vector<HostRow> host_attempt_rows() {
   };
 }
 
+std::vector<HostRow> host_keeping_rows() {
+  using namespace host_seeded_faults;
+  return {
+      {"refresh_acknowledge_not_compared", "", "takes any acknowledge of a refresh",
+       mutant<RefreshAcknowledgeNotCompared>()},
+      {"refresh_repetitions_not_counted", "", "does not count the repetitions of refreshes",
+       mutant<RefreshRepetitionsNotCounted>()},
+      {"failed_refresh_not_reported", "", "reports no refresh that was not acknowledged",
+       mutant<FailedRefreshesReported>(0U)},
+      {"failed_refresh_reported_once", "", "reports the first refresh that was not acknowledged only",
+       mutant<FailedRefreshesReported>(1U)},
+      {"busy_write_forgotten", "", "does not refresh a write that found no silent line",
+       mutant<BusyWriteForgotten>()},
+      {"busy_write_leaves_old_data", "", "refreshes the write before one that found no silent line",
+       mutant<BusyWriteLeavesOldData>()},
+      {"busy_refresh_at_once", "", "sends a refresh that found no silent line as soon as it is silent",
+       mutant<BusyRefreshAtOnce>()},
+      {"repeats_into_talk", "", "sends a second attempt while others are on the line",
+       mutant<RepeatsIntoTalk>()},
+      {"waiting_write_stops_refreshes", "", "does not refresh a node for which a write waits",
+       mutant<WaitingWriteStopsRefreshes>()},
+      {"part_given_up_when_idle", "", "gives up a part of a command when its exchange is over",
+       mutant<PartGivenUpWhenIdle>()},
+      {"part_given_up_after_110_ms", "", "gives up a part of a command after 110 ms",
+       with_rules<valve_bus::Host>(
+           [](valve_bus::Rules& rules) { rules.partial_command_limit = 110 * kernel::kMillisecond; })},
+      {"wrong_response_not_waited_out", "", "repeats a read at once after a wrong response",
+       mutant<WrongNotWaitedOut>(false)},
+      {"wrong_acknowledge_not_waited_out", "", "repeats a write at once after a wrong acknowledgement",
+       mutant<WrongNotWaitedOut>(true)},
+      {"no_rest_behind_read_back", "", "sends at once after a last attempt to read back",
+       mutant<NoRestBehindReadBack>()},
+      {"late_of_three_octets_counted", "", "counts late frames of three octets only",
+       mutant<LateOfThreeOctetsCounted>()},
+      {"inverted_check_taken", "", "takes a response with all bits of its check inverted",
+       mutant<InvertedCheckTaken>()},
+  };
+}
+
 std::vector<HostRow> host_sequence_rows() {
   using namespace host_seeded_faults;
   return HostMutants::for_check({
@@ -276,8 +316,9 @@ std::vector<HostRow> host_sequence_rows() {
 
 const HostMutants& host_mutants() {
   static const HostMutants table(
-      "host", {host_command_rows, host_request_rows, host_write_rows, host_wait_rows, host_response_rows,
-               host_telling_rows, host_lasting_rows, host_attempt_rows, host_sequence_rows});
+      "host",
+      {host_command_rows, host_request_rows, host_write_rows, host_wait_rows, host_response_rows,
+       host_telling_rows, host_lasting_rows, host_attempt_rows, host_keeping_rows, host_sequence_rows});
   return table;
 }
 

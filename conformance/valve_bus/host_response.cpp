@@ -16,9 +16,15 @@ using Octets = std::vector<std::uint8_t>;
 
 constexpr unsigned kResponseBits = 8 * valve_bus::kResponseOctets;
 
+// At last all bits of the check.
 Octets wrong_bit(HostScene& scene) {
   Octets octets = host_chart::right_octets(scene);
-  invert(octets, scene.round % kResponseBits);
+  const unsigned which = scene.round % (kResponseBits + 1);
+  if (which < kResponseBits) {
+    invert(octets, which);
+  } else {
+    octets.back() = static_cast<std::uint8_t>(~octets.back());
+  }
   return octets;
 }
 
@@ -111,17 +117,21 @@ std::vector<HostCase> cases_of_octets() {
                {{10, 500},
                 {read(), response(), reported(),
                  nothing_reported(2 * kernel::kMillisecond, "told_twice", "one read, one response")}}),
-      on_chart({.id = "valve_bus/host/response/each_wrong_bit_is_refused",
-                .purpose = "RH-06",
-                .requirement = "A response whose block check does not fit is refused, and the node is "
-                               "polled again.",
-                .reference = valve_sources::paper("host on a wrong block check"),
-                .tags = {"must"},
-                .catches = {{"response_not_checked", "wrong_response_told"},
-                            {"bad_response_not_repeated", "no_retry"}}},
-               {{kResponseBits, kResponseBits},
-                {read(), answer("the node answers with one of the 24 bits wrong, each in turn", wrong_bit),
-                 refused("wrong_response_told", "its check does not fit")}}),
+      on_chart(
+          {.id = "valve_bus/host/response/each_wrong_bit_is_refused",
+           .purpose = "RH-06",
+           .requirement = "A response whose block check does not fit is refused, and the node is "
+                          "polled again.",
+           .reference = valve_sources::paper("host on a wrong block check"),
+           .tags = {"must"},
+           .catches = {{"response_not_checked", "wrong_response_told"},
+                       {"inverted_check_taken", "wrong_response_told"},
+                       {"bad_response_not_repeated", "no_retry"}}},
+          {{kResponseBits + 1, kResponseBits + 1},
+           {read(),
+            answer("the node answers with one of the 24 bits wrong, each in turn, then with all of the check",
+                   wrong_bit),
+            refused("wrong_response_told", "its check does not fit")}}),
       on_chart({.id = "valve_bus/host/response/two_wrong_bits_of_a_column_are_taken",
                 .purpose = "RH-07",
                 .requirement = "The block check of a response is the exclusive or of DATA0 and DATA1: it "

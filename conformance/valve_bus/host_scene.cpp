@@ -81,6 +81,15 @@ HostStep served_read() {
           [](HostScene& scene) { scene.known = expect_read_served(scene.bench, scene.judge, scene.id); }};
 }
 
+MakeOctets written_data(bool is_right) {
+  return [is_right](HostScene& scene) {
+    valve_bus::Response response{scene.command.data0, scene.command.data1};
+    if (!is_right) (scene.round % 2 == 0 ? response.data1 : response.data0) ^= 1U << scene.round % 8;
+    const auto octets = octets_of(response);
+    return std::vector<std::uint8_t>(octets.begin(), octets.end());
+  };
+}
+
 HostStep power_cycled() {
   return stimulus("power goes off and comes", [](HostScene& scene) {
     scene.bench.restart(static_cast<unsigned>(scene.bench.pics().number("dip", 0)));

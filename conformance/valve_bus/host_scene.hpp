@@ -85,6 +85,8 @@ using MakeOctets = std::function<std::vector<std::uint8_t>(HostScene&)>;
 using MakeTime = std::function<kernel::Duration(HostScene&)>;
 HostStep answer(std::string text, MakeOctets octets, MakeTime after = {});
 std::vector<std::uint8_t> right_octets(HostScene& scene);
+// What was written, as the node would give it: but for one bit of DATA1 or of DATA0 when it is wrong.
+MakeOctets written_data(bool is_right);
 // The node gives these levels for the octets of a right response, which stand in the scene.
 HostStep answer_levels(std::string text, std::function<line::Levels(HostScene&)> levels);
 

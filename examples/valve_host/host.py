@@ -154,7 +154,7 @@ class Host:
                 self.take_response(frame[0], frame[1], now)
             else:
                 self.was_wrong = True
-        elif is_right and (self.is_awaiting or self.asked):
+        elif not is_spoilt and (self.is_awaiting or self.asked):
             self.count(LATE, now)
 
     def take_response(self, data0, data1, now):
@@ -183,9 +183,11 @@ class Host:
 
     def give_up(self, kind, now):
         request, self.request, self.is_awaiting = self.request, None, False
-        if kind == LINE_BUSY and not request.is_of_pc:  # a refresh: without an error, and due again
-            self.written[request.id] = *self.written[request.id][:2], now
-        elif request.command == WRITE:
+        if kind == LINE_BUSY and request.command == WRITE:  # is remembered, and due again
+            self.written[request.id] = request.data0, request.data1, now
+        if kind == LINE_BUSY and not request.is_of_pc:  # a refresh: without an error
+            return
+        if request.command == WRITE:
             self.report_error(request.id, kind if kind == LINE_BUSY else NOT_ACKNOWLEDGED, now)
         else:
             self.report_error(request.id, kind, now)
@@ -216,12 +218,14 @@ class Host:
         times = [self.driver_off_at, self.fifo.deadline, self.silence_known() if self.frame else NEVER]
         if self.is_awaiting:
             times.append(self.response_known() + (self.time_out if self.is_being_answered() else 0))
-        elif self.request or self.verification or self.fifo.has_command():
-            times.append(NEVER if self.frame else self.free_at())
-            times.append(self.blocked_since + self.time_out if self.blocked_since != NEVER else NEVER)
+        elif self.blocked_since != NEVER:
+            times += NEVER if self.frame else self.free_at(), self.blocked_since + self.time_out
         else:
-            times.append(NEVER if self.frame else max(self.free_at(), self.refresh_due()[0]))
+            times.append(max(self.work_since(), self.rest_until if self.frame else self.free_at()))
         return min(times)
+
+    def work_since(self):
+        return 0 if self.request or self.verification or self.fifo.has_command() else self.refresh_due()[0]
 
     def is_being_answered(self):
         return self.frame and self.frame_start < self.own_end + self.time_out
@@ -252,7 +256,7 @@ class Host:
     def go_on(self, now):
         if self.is_awaiting or now < self.rest_until:
             return
-        while self.request or self.verification or self.fifo.has_command() or now >= self.refresh_due()[0]:
+        while now >= self.work_since():
             if self.frame or now < self.free_at():
                 self.wait_for_silence(now)
                 return

@@ -54,6 +54,11 @@ FAULTS = {
     "no_rest_after_wrong": ("rests after a last attempt that nothing answered only", "attempts/rest_follows_wrong_responses",
                             "self.time_out + self.time_out // 20",
                             "self.time_out + (0 if self.was_wrong else self.time_out // 20)"),
+    "busy_write_forgotten": ("forgets a write that found no silent line", "line/busy_write_is_kept",
+                             "if kind == LINE_BUSY and request.command == WRITE:",
+                             "if kind == LINE_BUSY and not request.is_of_pc:"),
+    "late_of_three_octets": ("counts late frames of three octets only", "attempts/each_late_frame_is_counted",
+                             "elif not is_spoilt and", "elif is_right and"),
 }
 
 if __name__ == "__main__":

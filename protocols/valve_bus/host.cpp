@@ -151,7 +151,8 @@ kernel::Time Host::work_since() const {
 }
 
 kernel::Time Host::sends_at() const {
-  if (state_ != HostState::idle || !collector_.is_empty()) return kernel::kNever;
+  const bool is_silent = collector_.is_empty() || !waits_for_silence();
+  if (state_ != HostState::idle || !is_silent) return kernel::kNever;
   return std::max(work_since(), free_at_);
 }
 
@@ -310,6 +311,7 @@ bool Host::is_verified(const Command& written, const Response& read) const {
 void Host::reject() {
   ++counted(last_id_).rejected;
   is_rejected_ = true;
+  if (!waits_out_a_wrong_response()) window_end_ = request_end_;
 }
 
 void Host::close_window(kernel::Time now) {

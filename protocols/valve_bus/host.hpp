@@ -117,6 +117,8 @@ class Host : public HostDevice {
   virtual kernel::Duration longest_talk() const { return time_out(); }
   // What is left for a late response after the last attempt.
   virtual kernel::Duration late_span() const;
+  // Nothing begins while others are on the line.
+  virtual bool waits_for_silence() const { return true; }
 
   // ---- decisions: what is heard ----
   virtual line::UartCharacter judged(const line::UartCharacter& character) const { return character; }
@@ -126,6 +128,8 @@ class Host : public HostDevice {
   virtual std::optional<Response> response_in(const CollectedFrame& frame) const;
   virtual bool fits(std::span<const std::uint8_t> octets) const;
   virtual void on_stray(const CollectedFrame& frame, kernel::Time now);
+  // The time-out of an attempt that was answered wrongly goes on.
+  virtual bool waits_out_a_wrong_response() const { return true; }
   virtual bool is_verified(const Command& written, const Response& read) const;
 
   // ---- decisions: what the PC is told ----
