@@ -133,7 +133,7 @@ void RingEmulator::receive(segment::PortIndex, const line::Waveform& reception) 
     constexpr std::size_t kTail = 2 * line::kDataTelegramLevels;
     if (!*faults_.stuck && size > kTail) out_.levels.append_fill(false, size - kTail);
   }
-  if (!was_open && !out_.levels.empty()) back_->drive(out_);
+  if (!was_open) answer();
 }
 
 void RingEmulator::on_time(kernel::Time now) {
@@ -143,7 +143,7 @@ void RingEmulator::on_time(kernel::Time now) {
     on_telegram(wave, telegram);
     last_end_ = kernel::level_time(wave.time_of(telegram.level), telegram.levels(), rules_.bit_rate);
   });
-  if (!is_open() && !out_.levels.empty()) back_->drive(out_);
+  if (!is_open()) answer();
 }
 
 void RingEmulator::begin_answer(kernel::Time from) {
@@ -152,6 +152,16 @@ void RingEmulator::begin_answer(kernel::Time from) {
   out_.start = from + delay();
   out_.rate = rules_.bit_rate * rate_per_mille_ / 1000;
   out_.levels.clear();
+  const kernel::Duration over = answered_until_ - out_.start + kernel::levels_duration(1, 2 * out_.rate);
+  answered_bits_ =
+      over > kernel::Duration::zero() ? static_cast<std::size_t>(kernel::levels_within(over, out_.rate)) : 0;
+  out_.start += kernel::levels_duration(static_cast<std::int64_t>(answered_bits_), out_.rate);
+}
+
+void RingEmulator::answer() {
+  if (out_.levels.empty()) return;
+  answered_until_ = out_.end();
+  back_->drive(out_);
 }
 
 // What began before the reception (a telegram that an earlier one left incomplete) leaves with its start.

@@ -179,13 +179,14 @@ class RingEmulator : public segment::Station {
   std::size_t bit_of(const line::Waveform& wave, std::uint32_t level) const;
   // At a bit, or right after what was sent before.
   void emit_levels(std::size_t bit, std::uint64_t levels, unsigned count) {
-    const std::size_t at = std::max(bit, out_.levels.size());
+    const std::size_t at = std::max(bit > answered_bits_ ? bit - answered_bits_ : 0, out_.levels.size());
     out_.levels.make_room(at + count);
     out_.levels.place(at, levels, count);
   }
   std::uint8_t shifted_octet(std::size_t index) const;
   void note_gap(kernel::Time start, kernel::Time last_end);
   void begin_answer(kernel::Time from);
+  void answer();
   void reset_stations();
   void close_ring();
   bool is_open() const;
@@ -231,6 +232,9 @@ class RingEmulator : public segment::Station {
   std::uint16_t received_check_ = 0;
   std::uint16_t sent_check_ = 0;
   line::Waveform out_;
+  // A telegram too many stays on the line when the master drives the next one by itself.
+  kernel::Time answered_until_ = kernel::kStart;
+  std::size_t answered_bits_ = 0;  // which out_ begins later for that
 
   // The log.
   std::vector<SeenCycle> kept_{kKept};

@@ -39,11 +39,17 @@ class Line : public segment::Port {
       code_.append(wave.levels, static_cast<std::uint8_t>(header), octets[n]);
       wave.levels.append_idle(2);
     }
+    for (unsigned n = 0; n < status_telegrams; ++n) {
+      code_.append(wave.levels, 0, 0);
+      wave.levels.append_idle(1);
+    }
     now_ += kernel::kMillisecond;
     returned.clear();
     send(wave);
     return returned;
   }
+
+  unsigned status_telegrams = 0;  // after the cycle
 
   // How the master divides what it sends: levels to a bit, and bits to a waveform, which drift apart.
   unsigned fineness = 1;
@@ -62,7 +68,9 @@ class Line : public segment::Port {
   }
 
   void drive(line::Waveform& wave) override {
+    is_overdriven = is_overdriven || wave.start + kernel::kMicrosecond < driven_until_;
     start = wave.start;
+    driven_until_ = wave.end();
     code_.decode(wave.levels, 0, [this](const line::Telegram& t) {
       if (t.is_data()) returned.push_back(t.data);
     });
@@ -72,10 +80,12 @@ class Line : public segment::Port {
   RingEmulator ring;
   kernel::Time start{};
   std::vector<std::uint8_t> returned;
+  bool is_overdriven = false;  // before what was driven is over
 
  private:
   line::TelegramCode code_;
   kernel::Time now_ = kernel::kStart;
+  kernel::Time driven_until_ = kernel::kStart;
 };
 
 using Octets = std::vector<std::uint8_t>;
@@ -191,6 +201,26 @@ TEST(RingEmulator, suffers_what_the_script_says) {
   EXPECT_EQ(with([](CycleFaults& f) { f.marked_by = 0; }).at(7), 0xFF);
   EXPECT_TRUE(with([](CycleFaults& f) { f.stuck = true; }).empty());
   EXPECT_TRUE(with([](CycleFaults& f) { f.stuck = false; }).empty());
+}
+
+TEST(RingEmulator, suffers_the_same_when_each_telegram_is_driven_by_itself) {
+  const auto with = [](std::size_t bits_to_a_part, auto change) {
+    Line line(line_of(1, 0x0103, 1));
+    line.bits_to_a_part = bits_to_a_part;
+    line.status_telegrams = 5;
+    line.ring.set_script([change](const auto&, CycleFaults& faults) { change(faults); });
+    const Octets returned = line.cycle({0xA5, 0x5A, 0x00, 0x00});
+    EXPECT_FALSE(line.is_overdriven);
+    return returned;
+  };
+  constexpr std::size_t kTelegramAndGap = line::kDataTelegramLevels + 2;
+  for (int index = 0; index < 8; ++index) {
+    const auto inserted = [index](CycleFaults& f) { f.inserted = index; };
+    EXPECT_EQ(with(kTelegramAndGap, inserted), with(1'000, inserted)) << index;
+    const auto twice = [index](CycleFaults& f) { f.duplicated = index; };
+    EXPECT_EQ(with(kTelegramAndGap, twice), with(1'000, twice)) << index;
+  }
+  EXPECT_EQ(with(kTelegramAndGap, [](CycleFaults& f) { f.trailing_telegram = true; }).size(), 9U);
 }
 
 TEST(RingEmulator, is_silent_when_the_ring_is_open_and_marks_a_bad_check) {
