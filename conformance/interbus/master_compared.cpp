@@ -66,6 +66,27 @@ std::vector<MasterCommands> each_fault_on_the_way_back() {
   return all;
 }
 
+void add_end_telegrams(interbus::Rules& rules) {
+  rules.end_telegrams = 2;
+}
+
+std::vector<MasterCommands> each_fault_at_the_end_of_a_cycle() {
+  constexpr std::array<std::uint32_t, 4> kLevels{1, 2, 3, 12};
+  std::vector<MasterCommands> all;
+  for (const auto& [is_id_cycle, first] : {std::pair{false, 8U}, std::pair{true, 10U}}) {
+    for (std::uint32_t unit = first; unit < first + 4; ++unit) {
+      for (std::size_t n = 0; n <= kLevels.size(); ++n) {
+        SequenceCommand changed = order(MasterWord::changed);
+        const bool is_lost = n == kLevels.size();
+        changed.faults.push_back(
+            {is_lost ? SequenceFaultKind::drop : SequenceFaultKind::flip, unit, is_lost ? 0 : kLevels.at(n)});
+        is_id_cycle ? all.push_back({order(MasterWord::identify), changed}) : all.push_back({changed});
+      }
+    }
+  }
+  return all;
+}
+
 std::vector<SequenceCommand> events_for_a_master() {
   return {order(MasterWord::bad),
           order(MasterWord::bad, {{0, 9}}),
@@ -121,6 +142,10 @@ std::vector<MasterCommands> run_after_run() {
                      order(MasterWord::bad, {{0, 9}})});
     }
   }
+  for (const std::int64_t number : {4, 6}) {
+    all.push_back({ring(number), order(MasterWord::outputs, {{0, 0x1111}, {1, 0x2222}}), cycles(2),
+                   order(MasterWord::stop), order(MasterWord::start), cycles(2)});
+  }
   for (std::int64_t station = 0; station < 4; ++station) {
     const SequenceCommand changed = order(MasterWord::ring, {{0, 0}, {1, station}});
     all.push_back({ring(5), changed, order(MasterWord::identify), cycles(2)});
@@ -155,7 +180,7 @@ std::vector<MasterCommands> each_ring() {
   constexpr std::int64_t kMostStations = 4;
   std::vector<MasterCommands> all;
   for (std::int64_t number = 0; number < kRings; ++number) {
-    for (std::int64_t copies = 0; copies < 3; ++copies) {
+    for (std::int64_t copies = 0; copies < 4; ++copies) {
       all.push_back({order(MasterWord::power, {{0, number}, {1, 1}, {2, copies}}),
                      order(MasterWord::inputs, {{0, 0x1234}, {1, 0x8765}}),
                      order(MasterWord::outputs, {{0, 0x0F1E}, {1, 0x2D3C}}), cycles(2),
@@ -183,12 +208,36 @@ void drawn_for_a_master(MasterBench& bench, CaseJudge& judge) {
     run_master_sequence({.commands = source.draw(40 + n).commands}, bench, judge);
 }
 
+using MasterProcedure = std::function<void(MasterBench&, CaseJudge&)>;
+
+MasterProcedure one_after_another(MasterProcedure first, MasterProcedure second) {
+  return [first = std::move(first), second = std::move(second)](MasterBench& bench, CaseJudge& judge) {
+    first(bench, judge);
+    second(bench, judge);
+  };
+}
+
 // ---- other settings ----
 
 void change_all_codings(interbus::Rules& rules) {
   change_each_coding(rules);
   rules.loopback_word = 0x8C31;
   rules.end_telegrams = 3;
+  rules.message_peripheral_fault = 0x2000;
+  rules.message_reconfiguration = 0x4000;
+  rules.message_check_error = 0x8000;
+}
+
+std::vector<MasterCommands> messages_of_each_station() {
+  MasterCommands all{ring(5)};
+  for (std::int64_t station = 0; station < 4; ++station) {
+    all.push_back(order(MasterWord::messages, {{0, station}, {1, 1 + station % 3}}));
+    all.push_back(order(MasterWord::identify));
+    all.push_back(cycles(2));
+    all.push_back(order(MasterWord::marked, {{0, station}, {1, station}}));
+    all.push_back(cycles(2));
+  }
+  return {all};
 }
 
 void change_times_of_a_master(interbus::Rules& rules) {
@@ -212,16 +261,20 @@ std::vector<MasterCase> master_compared_cases() {
                {{"first_station_first", "cycle_wrong"}}, each_beside(each_value_for_a_master, 160)),
       compared("each_fault_on_the_way_back",
                "A data cycle and an ID cycle come back with a level flipped or a telegram lost.",
-               {{"telegrams_without_gap", "cycle_time_wrong"}}, each_beside(each_fault_on_the_way_back, 160)),
+               {{"telegrams_without_gap", "cycle_time_wrong"}},
+               one_after_another(each_beside(each_fault_on_the_way_back, 160),
+                                 each_beside(each_fault_at_the_end_of_a_cycle, 40, add_end_telegrams))),
       compared("one_thing_after_another", "Each two of all that can happen to a master, in run.",
                {{"cycle_start_wanders", "pause_not_filled"}}, each_beside(one_order_after_another, 50)),
       compared("run_after_run", "What ends a run, a start, and what ends the next one.",
                {{"changed_ring_ignored", "state_missing"}}, each_beside(run_after_run, 60)),
-      compared("each_ring", "Each ring, with no, two and all words copied, and cut in front of each station.",
+      compared("each_ring",
+               "Each ring, with no, two and all words copied, with copies from and to words that it does not "
+               "have, and cut in front of each station.",
                {{"later_words_of_a_station_frozen", "new_inputs_missed"},
                 {"third_copy_lost", "cycle_wrong"},
                 {"lone_station_not_placed", "state_wrong"}},
-               each_beside(each_ring, 49)),
+               each_beside(each_ring, 56)),
       compared("orders_in_each_state",
                "Start, stop, an ID cycle and an output are ordered in each state but run.",
                {{"stop_before_run_ignored", "not_silent"}, {"early_output_kept", "early_output_kept"}},
@@ -232,7 +285,8 @@ std::vector<MasterCase> master_compared_cases() {
                {{"first_station_first", "cycle_wrong"}}, drawn_for_a_master),
       compared("other_codings", "The same with each coding another one.",
                {{"outputs_one_cycle_late", "cycle_wrong"}},
-               each_beside(each_value_for_a_master, 10, change_all_codings)),
+               one_after_another(each_beside(messages_of_each_station, 1, change_all_codings),
+                                 each_beside(each_value_for_a_master, 10, change_all_codings))),
       compared("other_times", "The same with other times and counts.",
                {{"inputs_frozen", "new_inputs_missed"}, {"bit_rate_kept", "state_wrong"}},
                each_beside(run_after_run, 8, change_times_of_a_master))};

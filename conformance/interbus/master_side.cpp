@@ -62,9 +62,11 @@ void MasterSide::power(const MasterScene& scene) {
   unsigned words = 0;
   for (const VirtualStation& one : scene.ring) words += one.words;
   configuration.copy.clear();
-  for (unsigned word = 0; word < words && scene.copies != Copies::none; ++word) {
+  if (scene.copies == Copies::beyond) configuration.copy = {{words, 0}, {0, words}};
+  for (unsigned word = 0; word < words; ++word) {
     const bool is_end = word == 0 || word + 1 == words;
-    if (is_end || scene.copies == Copies::all) configuration.copy.push_back({word, words - 1 - word});
+    if ((is_end && scene.copies == Copies::ends) || scene.copies == Copies::all)
+      configuration.copy.push_back({word, words - 1 - word});
   }
   if (!bench_.may_answer("request_below_minimum", "clipped")) configuration.cycle_time = {};
   const interbus::Rules usual = bench_.rules();
@@ -205,15 +207,13 @@ void MasterSide::stop(bool is_disturbed) {
   const std::uint64_t before = bench_.ring().cycle_count();
   if (is_disturbed && was_running) armed_ = changed_answer();
   bench_.stop();
+  // An output has no effect any more.
+  if (is_disturbed && was_running) bench_.write_output(0, 0xFFFF);
   bench_.run_until([this] { return bench_.status().state == MasterState::off; }, kernel::kSecond);
   bench_.run_for(kernel::kMillisecond);
   armed_.reset();
   if (was_running && is_ring_right_) {
-    const SeenCycle& last = bench_.ring().last_cycle();
-    bool is_zero = bench_.ring().cycle_count() > before && !last.is_id_cycle;
-    for (unsigned word = 0; word < bench_.ring().word_count(); ++word)
-      is_zero = is_zero && bench_.ring().output(word) == 0;
-    expect(is_zero, "outputs_not_cleared", "a last data cycle with outputs 0", "no such cycle");
+    judge_stop(before);
   }
   const std::uint64_t cycles = bench_.ring().cycle_count();
   bench_.run_for(kIdle);

@@ -38,8 +38,8 @@ enum class Limits : std::uint8_t {
 };
 
 // Words that a master copies: none, the first and the last one to each other's place, each to the place that
-// is as far from the end.
-enum class Copies : std::uint8_t { none, ends, all };
+// is as far from the end, or one from and one to a word that the ring does not have.
+enum class Copies : std::uint8_t { none, ends, all, beyond };
 
 // What an application orders in another state than run.
 enum class EarlyOrder : std::uint8_t { start, stop, id_cycle, output };
@@ -107,6 +107,7 @@ class MasterSide {
   void give(EarlyOrder order);
   void await_stop();
   void await_outputs_of_run();
+  void expect_no_start();
   kernel::Duration longest_recognition() const;
   void limit_ring(const MasterScene& scene);
   void on_ring_cycle(bool is_id_cycle, interbus::CycleFaults& faults);
@@ -127,6 +128,7 @@ class MasterSide {
   void judge_silence();
   void judge_line();
   void judge_break();
+  void judge_stop(std::uint64_t first);
   std::int64_t cycle_times();
   void expect(bool holds, std::string_view reason, std::string_view expected, std::string_view actual) const;
   std::vector<std::uint16_t> image() const;

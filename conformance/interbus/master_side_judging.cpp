@@ -99,6 +99,27 @@ void MasterSide::judge_silence() {
          kernel::describe(longest));
 }
 
+// One cycle that takes the outputs to 0, also when it comes back bad; a cycle that was under way is none.
+void MasterSide::judge_stop(std::uint64_t first) {
+  const interbus::RingEmulator& ring = bench_.ring();
+  bool is_zero = ring.cycle_count() > first && !ring.last_cycle().is_id_cycle;
+  for (unsigned word = 0; word < ring.word_count(); ++word) is_zero = is_zero && ring.output(word) == 0;
+  expect(is_zero, "outputs_not_cleared", "a last data cycle with outputs 0", "no such cycle");
+  std::uint64_t data_cycles = 0;
+  for (std::uint64_t n = first; n < ring.cycle_count() && ring.has_cycle(n); ++n)
+    if (!ring.cycle(n).is_id_cycle) ++data_cycles;
+  expect(data_cycles <= 2, "goes_on_after_a_stop",
+         "one data cycle after a stop, and one that was under way at most",
+         fmt::format("{} data cycles", data_cycles));
+  const std::vector<std::uint16_t> seen = image();
+  const std::vector<std::size_t> places = input_places();
+  for (std::size_t n = 0; n < seen.size() && n < held_.size(); ++n) {
+    const bool is_held = seen[n] == held_[n] || seen[n] == returned_->word(places[n]);
+    expect(is_held, "inputs_not_held", "inputs that hold when the bus stops",
+           fmt::format("input word {} of the image is {:04X}h", n, seen[n]));
+  }
+}
+
 // After a stop or a bus stop all stations fall into reset before anything is looked for.
 void MasterSide::judge_break() {
   const interbus::Rules& rules = bench_.rules();
