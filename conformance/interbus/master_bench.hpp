@@ -121,11 +121,13 @@ class MasterBench final : public CaseBench {
   interbus::MasterStatus status() const { return master_->status(); }
   bool is_in_run() const { return status().state == interbus::MasterState::run; }
 
+  // Words of the image that stations with inputs have, and what the master shows there.
+  std::vector<unsigned> input_words() const;
+  std::vector<std::uint16_t> inputs() const;
+
  private:
   void on_cycle_end(kernel::Time now, bool data_cycle, bool accepted);
   void ask_script(const interbus::RingEmulator::CycleInfo& info, interbus::CycleFaults& faults);
-  std::vector<unsigned> input_words() const;
-  std::vector<std::uint16_t> inputs() const;
   void run_to_accepted_data_cycle(CaseJudge& judge);
   void expect_inputs(CaseJudge& judge, const std::vector<std::uint16_t>& expected);
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <initializer_list>
+#include <span>
 #include <utility>
 
 #include "conformance/interbus/compared_master.hpp"
@@ -42,49 +43,45 @@ std::vector<MasterCommands> each_value_for_a_master() {
   return all;
 }
 
+// A level flipped, or the telegram lost, of each of so many telegrams.
+std::vector<MasterCommands> faults_of_telegrams(bool is_id_cycle, std::uint32_t first, std::uint32_t count,
+                                                std::span<const std::uint32_t> levels) {
+  std::vector<MasterCommands> all;
+  const auto add = [&](const SequenceFault& fault) {
+    SequenceCommand changed = order(MasterWord::changed);
+    changed.faults.push_back(fault);
+    all.push_back({changed});
+    if (is_id_cycle) all.back().insert(all.back().begin(), order(MasterWord::identify));
+  };
+  for (std::uint32_t unit = first; unit < first + count; ++unit) {
+    for (const std::uint32_t level : levels) add({SequenceFaultKind::flip, unit, level});
+    add({SequenceFaultKind::drop, unit, 0});
+  }
+  return all;
+}
+
+std::vector<MasterCommands> both(std::vector<MasterCommands> all, const std::vector<MasterCommands>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
 // Each header level, the stop level and some data levels of each telegram, and each telegram lost; of a data
 // cycle and of an ID cycle.
 std::vector<MasterCommands> each_fault_on_the_way_back() {
   constexpr std::array<std::uint32_t, 7> kLevels{0, 1, 2, 3, 4, 11, 12};
   constexpr std::uint32_t kTelegrams = 10;
-  std::vector<MasterCommands> all;
-  for (const bool is_id_cycle : {false, true}) {
-    for (std::uint32_t unit = 0; unit < kTelegrams; ++unit) {
-      for (std::size_t n = 0; n <= kLevels.size(); ++n) {
-        SequenceCommand changed = order(MasterWord::changed);
-        const bool is_lost = n == kLevels.size();
-        changed.faults.push_back(
-            {is_lost ? SequenceFaultKind::drop : SequenceFaultKind::flip, unit, is_lost ? 0 : kLevels.at(n)});
-        if (is_id_cycle) {
-          all.push_back({order(MasterWord::identify), changed});
-        } else {
-          all.push_back({changed});
-        }
-      }
-    }
-  }
-  return all;
+  return both(faults_of_telegrams(false, 0, kTelegrams, kLevels),
+              faults_of_telegrams(true, 0, kTelegrams, kLevels));
 }
 
 void add_end_telegrams(interbus::Rules& rules) {
   rules.end_telegrams = 2;
 }
 
+// Of the status word and what comes after it.
 std::vector<MasterCommands> each_fault_at_the_end_of_a_cycle() {
   constexpr std::array<std::uint32_t, 4> kLevels{1, 2, 3, 12};
-  std::vector<MasterCommands> all;
-  for (const auto& [is_id_cycle, first] : {std::pair{false, 8U}, std::pair{true, 10U}}) {
-    for (std::uint32_t unit = first; unit < first + 4; ++unit) {
-      for (std::size_t n = 0; n <= kLevels.size(); ++n) {
-        SequenceCommand changed = order(MasterWord::changed);
-        const bool is_lost = n == kLevels.size();
-        changed.faults.push_back(
-            {is_lost ? SequenceFaultKind::drop : SequenceFaultKind::flip, unit, is_lost ? 0 : kLevels.at(n)});
-        is_id_cycle ? all.push_back({order(MasterWord::identify), changed}) : all.push_back({changed});
-      }
-    }
-  }
-  return all;
+  return both(faults_of_telegrams(false, 8, 4, kLevels), faults_of_telegrams(true, 10, 4, kLevels));
 }
 
 std::vector<SequenceCommand> events_for_a_master() {
@@ -210,7 +207,7 @@ void drawn_for_a_master(MasterBench& bench, CaseJudge& judge) {
 
 using MasterProcedure = std::function<void(MasterBench&, CaseJudge&)>;
 
-MasterProcedure one_after_another(MasterProcedure first, MasterProcedure second) {
+MasterProcedure both(MasterProcedure first, MasterProcedure second) {
   return [first = std::move(first), second = std::move(second)](MasterBench& bench, CaseJudge& judge) {
     first(bench, judge);
     second(bench, judge);
@@ -261,32 +258,40 @@ std::vector<MasterCase> master_compared_cases() {
                {{"first_station_first", "cycle_wrong"}}, each_beside(each_value_for_a_master, 160)),
       compared("each_fault_on_the_way_back",
                "A data cycle and an ID cycle come back with a level flipped or a telegram lost.",
-               {{"telegrams_without_gap", "cycle_time_wrong"}},
-               one_after_another(each_beside(each_fault_on_the_way_back, 160),
-                                 each_beside(each_fault_at_the_end_of_a_cycle, 40, add_end_telegrams))),
+               {{"telegrams_without_gap", "cycle_time_wrong"},
+                {"last_end_telegram_not_counted", "wrong_cycle_accepted"}},
+               both(each_beside(each_fault_on_the_way_back, 160),
+                    each_beside(each_fault_at_the_end_of_a_cycle, 40, add_end_telegrams))),
       compared("one_thing_after_another", "Each two of all that can happen to a master, in run.",
-               {{"cycle_start_wanders", "pause_not_filled"}}, each_beside(one_order_after_another, 50)),
+               {{"cycle_start_wanders", "pause_not_filled"},
+                {"output_after_stop_kept", "state_wrong"},
+                {"bad_stop_cycle_repeated", "goes_on_after_a_stop"}},
+               each_beside(one_order_after_another, 50)),
       compared("run_after_run", "What ends a run, a start, and what ends the next one.",
-               {{"changed_ring_ignored", "state_missing"}}, each_beside(run_after_run, 60)),
+               {{"changed_ring_ignored", "state_missing"}, {"inputs_cleared_by_stop", "inputs_not_held"}},
+               each_beside(run_after_run, 60)),
       compared("each_ring",
                "Each ring, with no, two and all words copied, with copies from and to words that it does not "
                "have, and cut in front of each station.",
                {{"later_words_of_a_station_frozen", "new_inputs_missed"},
                 {"third_copy_lost", "cycle_wrong"},
+                {"copies_zero_for_no_word", "cycle_wrong"},
                 {"lone_station_not_placed", "state_wrong"}},
                each_beside(each_ring, 56)),
       compared("orders_in_each_state",
                "Start, stop, an ID cycle and an output are ordered in each state but run.",
-               {{"stop_before_run_ignored", "not_silent"}, {"early_output_kept", "early_output_kept"}},
+               {{"stop_before_run_ignored", "not_silent"},
+                {"start_begins_again", "order_starts_again"},
+                {"early_output_kept", "early_output_kept"}},
                each_beside(orders_in_each_state, 16)),
       compared("many_cycles", "300 cycles, some of them bad, each with other inputs.",
                {{"outputs_torn", "cycle_wrong"}}, each_beside(many_cycles_of_a_master, 2)),
       compared("drawn_sequences", "Sequences of all words at random.",
                {{"first_station_first", "cycle_wrong"}}, drawn_for_a_master),
       compared("other_codings", "The same with each coding another one.",
-               {{"outputs_one_cycle_late", "cycle_wrong"}},
-               one_after_another(each_beside(messages_of_each_station, 1, change_all_codings),
-                                 each_beside(each_value_for_a_master, 10, change_all_codings))),
+               {{"outputs_one_cycle_late", "cycle_wrong"}, {"message_bit_kept", "report_wrong"}},
+               both(each_beside(messages_of_each_station, 1, change_all_codings),
+                    each_beside(each_value_for_a_master, 10, change_all_codings))),
       compared("other_times", "The same with other times and counts.",
                {{"inputs_frozen", "new_inputs_missed"}, {"bit_rate_kept", "state_wrong"}},
                each_beside(run_after_run, 8, change_times_of_a_master))};

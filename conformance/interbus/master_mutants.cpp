@@ -4,6 +4,7 @@
 #include "conformance/interbus/master_id_cycle_seeded_faults.hpp"
 #include "conformance/interbus/master_seeded_faults.hpp"
 #include "conformance/interbus/master_sequence_seeded_faults.hpp"
+#include "conformance/interbus/master_stop_seeded_faults.hpp"
 
 namespace fieldproof::conformance {
 
@@ -141,6 +142,20 @@ std::vector<MasterMutants::Row> master_rows() {
        mutant<OrdersOfIdCyclesAddUp>()},
       {"stop_before_run_ignored", "", "ignores a stop in any state but run", mutant<StopBeforeRunIgnored>()},
       {"early_output_kept", "", "sends an output that was written before it ran", mutant<EarlyOutputKept>()},
+      {"inputs_cleared_by_stop", "", "sets all inputs to 0 when it is stopped",
+       mutant<InputsClearedByStop>()},
+      {"output_after_stop_kept", "", "keeps an output that is written after a stop was ordered",
+       mutant<OutputAfterStopKept>()},
+      {"bad_stop_cycle_repeated", "", "repeats the data cycle of a stop until a good one comes back",
+       mutant<BadStopCycleRepeated>()},
+      {"start_begins_again", "", "begins again when it is started within a recognition",
+       mutant<StartBeginsAgain>()},
+      {"last_end_telegram_not_counted", "", "takes a cycle whose last end telegram is missing",
+       mutant<LastEndTelegramNotCounted>()},
+      {"copies_zero_for_no_word", "", "copies 0 from a word that the ring does not have",
+       mutant<CopiesZeroForNoWord>()},
+      {"message_bit_kept", "", "looks for peripheral faults at 8000h, whatever it is set to",
+       with_rules<interbus::Master>([](Rules& rules) { rules.message_peripheral_fault = 0x8000; })},
       {"pulse_widths_even", "", "copies pulses of an odd number of cycles one cycle shorter",
        mutant<PulseWidthsEven>()},
   };

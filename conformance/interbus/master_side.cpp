@@ -63,10 +63,11 @@ void MasterSide::power(const MasterScene& scene) {
   for (const VirtualStation& one : scene.ring) words += one.words;
   configuration.copy.clear();
   if (scene.copies == Copies::beyond) configuration.copy = {{words, 0}, {0, words}};
+  const bool copies_ends = scene.copies == Copies::ends;
+  const bool copies_all = scene.copies == Copies::all;
   for (unsigned word = 0; word < words; ++word) {
     const bool is_end = word == 0 || word + 1 == words;
-    if ((is_end && scene.copies == Copies::ends) || scene.copies == Copies::all)
-      configuration.copy.push_back({word, words - 1 - word});
+    if (copies_all || (copies_ends && is_end)) configuration.copy.push_back({word, words - 1 - word});
   }
   if (!bench_.may_answer("request_below_minimum", "clipped")) configuration.cycle_time = {};
   const interbus::Rules usual = bench_.rules();
@@ -125,7 +126,7 @@ void MasterSide::limit_ring(const MasterScene& scene) {
 void MasterSide::on_ring_cycle(bool is_id_cycle, CycleFaults& faults) {
   returned_->begin();
   states_seen_ |= std::uint64_t{1} << static_cast<unsigned>(bench_.status().state);
-  if (!is_id_cycle && std::exchange(is_before_data_, false)) has_kept_inputs_ = image() == at_start_;
+  if (!is_id_cycle && std::exchange(is_before_data_, false)) has_kept_inputs_ = bench_.inputs() == at_start_;
   if (disturbed_ > 0) {
     --disturbed_;
     faults = changed_answer();
@@ -147,7 +148,7 @@ void MasterSide::start(unsigned disturbed) {
   const std::uint64_t before = bench_.ring().cycle_count();
   driven_->forget_silence();
   bench_.start();
-  at_start_ = image();
+  at_start_ = bench_.inputs();
   has_kept_inputs_ = true;
   is_before_data_ = is_ring_known_;
   await_run();
@@ -190,7 +191,7 @@ void MasterSide::enter_run() {
   expect(has_identified && good == 2, "does_not_work_again",
          "an ID cycle that was asked for and two good data cycles after it within 8 cycles",
          has_identified ? "no good data cycles" : "no ID cycle");
-  held_ = image();
+  held_ = bench_.inputs();
   note_end();
   is_next_ = false;
   is_ring_known_ = true;
@@ -205,16 +206,14 @@ void MasterSide::stop(bool is_disturbed) {
   const bool was_running = is_running();
   is_stopped_ = true;
   const std::uint64_t before = bench_.ring().cycle_count();
+  const std::uint64_t under_way = has_begun() ? 1 : 0;
   if (is_disturbed && was_running) armed_ = changed_answer();
   bench_.stop();
-  // An output has no effect any more.
   if (is_disturbed && was_running) bench_.write_output(0, 0xFFFF);
   bench_.run_until([this] { return bench_.status().state == MasterState::off; }, kernel::kSecond);
   bench_.run_for(kernel::kMillisecond);
   armed_.reset();
-  if (was_running && is_ring_right_) {
-    judge_stop(before);
-  }
+  if (was_running && is_ring_right_) judge_stop(before, under_way);
   const std::uint64_t cycles = bench_.ring().cycle_count();
   bench_.run_for(kIdle);
   expect(bench_.ring().cycle_count() == cycles, "not_silent", "no cycle when it is stopped", "cycles");
@@ -414,7 +413,7 @@ void MasterSide::note_cycle() {
   for (std::size_t n = sent.transfer_octets + kCheckAndStatus; n < sent.octets.size(); ++n)
     cycle.push_back(sent.octets[n]);
   cycles_.push_back({cycle, when});
-  const std::vector<std::uint16_t> held = image();
+  const std::vector<std::uint16_t> held = bench_.inputs();
   Values inputs{bench_.finished().is_accepted ? 1 : 0};
   inputs.insert(inputs.end(), held.begin(), held.end());
   inputs_.push_back({inputs, when});

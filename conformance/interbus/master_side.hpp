@@ -128,10 +128,9 @@ class MasterSide {
   void judge_silence();
   void judge_line();
   void judge_break();
-  void judge_stop(std::uint64_t first);
+  void judge_stop(std::uint64_t first, std::uint64_t under_way);
   std::int64_t cycle_times();
   void expect(bool holds, std::string_view reason, std::string_view expected, std::string_view actual) const;
-  std::vector<std::uint16_t> image() const;
   std::vector<std::size_t> input_places() const;
 
   MasterBench& bench_;

@@ -11,11 +11,9 @@ using interbus::MasterState;
 void MasterSide::order_in(MasterState state, EarlyOrder order) {
   if (!is_running() || !is_ring_right_) return;
   const bool is_before_run = state == MasterState::ready || state == MasterState::identification;
-  std::uint64_t cycles_before = 0;
   if (is_before_run) {
     stop(false);
     is_stopped_ = false;
-    cycles_before = bench_.ring().cycle_count();
     bench_.start();
   } else {
     bench_.ring().cut_after(-1);
@@ -27,7 +25,6 @@ void MasterSide::order_in(MasterState state, EarlyOrder order) {
   const bool is_there =
       bench_.run_until([&] { return bench_.status().state == state; }, longest_recognition());
   expect(is_there, "state_missing", fmt::format("the state {}", interbus::name(state)), "another one");
-  const bool is_silence_over = bench_.ring().cycle_count() > cycles_before;
   driven_->forget_silence();
   give(order);
   if (order == EarlyOrder::stop) {
@@ -35,7 +32,7 @@ void MasterSide::order_in(MasterState state, EarlyOrder order) {
   } else if (is_before_run || (state == MasterState::bus_stop && order == EarlyOrder::start)) {
     bench_.ring().mend();
     await_outputs_of_run();
-    if (is_before_run && is_silence_over && is_running()) expect_no_start();
+    if (state == MasterState::identification && is_running()) expect_no_start();
   } else {
     settle();
   }
@@ -72,7 +69,7 @@ kernel::Duration MasterSide::longest_recognition() const {
          rules.stop_after_bad_cycles * (stations + cable);
 }
 
-// A start is ignored once the recognition has begun: no other silence.
+// A station has answered: the silence of the start is over, and no order brings another one.
 void MasterSide::expect_no_start() {
   const kernel::Duration longest = driven_->longest_silence();
   expect(longest <= bench_.rules().silence_limit, "order_starts_again",

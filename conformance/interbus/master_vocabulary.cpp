@@ -110,7 +110,8 @@ std::vector<SequenceWord> words_of_rings() {
            .numbers = {{"change", 0, 4, 0}, station()},
            .weight = 1},
           {.word = "stop",
-           .meaning = "the application stops the bus; the last cycle comes back changed",
+           .meaning = "the application stops the bus; the last cycle comes back changed, and an output is "
+                      "written after the order",
            .numbers = {{"disturbed", 0, 1, 0}},
            .weight = 2},
           {.word = "start",

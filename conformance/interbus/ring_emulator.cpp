@@ -120,7 +120,7 @@ void RingEmulator::receive(segment::PortIndex, const line::Waveform& reception) 
     if (!is_plain) return on_telegram(wave, telegram);
     heard_bits_ = telegram_bit_ + line::kStatusTelegramLevels;
     ++statistics_.status_telegrams;
-    emit_levels(telegram_bit_, status_levels_, line::kStatusTelegramLevels);
+    emit_status(status_levels_, line::kStatusTelegramLevels);
   });
   if (heard_bits_ > 0) {
     last_end_ = kernel::level_time(heard_from_, static_cast<std::int64_t>(heard_bits_), rules_.bit_rate);
@@ -225,7 +225,7 @@ void RingEmulator::on_status() {
     levels = (levels | ~std::uint64_t{0} << count) ^ (std::uint64_t{1} << flag_level_);
     count = line::kDataTelegramLevels;
   }
-  emit_levels(telegram_bit_, levels, count);
+  emit_status(levels, count);
 }
 
 }  // namespace fieldproof::interbus

@@ -177,11 +177,15 @@ class RingEmulator : public segment::Station {
   void emit(const line::Telegram& telegram, std::uint8_t octet);
   // The bit of what leaves at which a telegram belongs: counted from the start of the reception.
   std::size_t bit_of(const line::Waveform& wave, std::uint32_t level) const;
-  // At a bit, or right after what was sent before.
+  // At a bit of the reception, or right after what was sent before.
   void emit_levels(std::size_t bit, std::uint64_t levels, unsigned count) {
     const std::size_t at = std::max(bit > answered_bits_ ? bit - answered_bits_ : 0, out_.levels.size());
     out_.levels.make_room(at + count);
     out_.levels.place(at, levels, count);
+  }
+  // A pause is that much shorter, so that the next cycle comes back in time.
+  void emit_status(std::uint64_t levels, unsigned count) {
+    if (telegram_bit_ >= answered_bits_) emit_levels(telegram_bit_, levels, count);
   }
   std::uint8_t shifted_octet(std::size_t index) const;
   void note_gap(kernel::Time start, kernel::Time last_end);

@@ -61,7 +61,7 @@ void expect_other_after_the_rest(HostScene& scene, HostErrorKind kind) {
 void repeated_after_time_out(HostScene& scene) {
   HostBench& bench = scene.bench;
   const HostFrame again = expect_retry(bench, scene.judge, scene.request);
-  const kernel::Duration least = bench.time_out() - bench.time_out_tolerance();
+  const kernel::Duration least = earliest_repetition(bench);
   scene.judge.expect(again.start - scene.request.end >= least, "time_out_too_short", [&] {
     return Mismatch{
         {fmt::format("the next attempt {} or more after the one before", kernel::describe(least))},

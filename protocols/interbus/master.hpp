@@ -88,6 +88,8 @@ class Master : public MasterDevice, private TopologyDecisions {
   virtual kernel::Duration cycle_time_in_force(kernel::Duration shortest) const;
   virtual kernel::Duration lateness(std::uint64_t) const { return {}; }  // of the start of a cycle
   virtual bool clears_outputs_on_stop() const { return true; }
+  // The one data cycle of a stop has come back, good or bad.
+  virtual bool ends_stop(bool) const { return true; }
 
   // ---- decisions after a cycle ----
   // What a data cycle brought, in the order of the input image; by default nothing of a rejected one.

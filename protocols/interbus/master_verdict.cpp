@@ -65,7 +65,7 @@ void Master::finish_data_cycle(kernel::Time now) {
       is_silent ? accepts_silence()
                 : accepts_loopback(returned_, 2 * words) && accepts_trailer() && accepts_inputs(brought);
   supervision_.count_data_cycle(accepted);
-  if (is_stopping_) {
+  if (is_stopping_ && ends_stop(accepted)) {
     enter_off();
   } else if (accepted) {
     if (!is_silent) std::ranges::copy(brought, inputs_.begin());
