@@ -5,7 +5,7 @@
 #include "conformance/interbus/master_sequence.hpp"
 
 // A master with more of everything: each of twelve stations, more words than an octet counts, more bad cycles
-// in a row than four bits count, orders that come twice, and rings that change.
+// in a row than four and eight bits count, cycles of seconds, orders that come twice, and rings that change.
 namespace fieldproof::conformance {
 namespace {
 
@@ -43,6 +43,28 @@ void stop_after_many(interbus::Rules& rules) {
 std::vector<MasterCommands> many_bad_cycles() {
   const SequenceCommand one_less = order(MasterWord::bad, {{0, kManyBadCycles - 1}});
   return {{one_less, cycles(2), one_less, order(MasterWord::bad), order(MasterWord::start), one_less}};
+}
+
+constexpr unsigned kBadCyclesBeyondAnOctet = 300;
+
+void stop_after_more_than_an_octet(interbus::Rules& rules) {
+  rules.stop_after_bad_cycles = kBadCyclesBeyondAnOctet;
+}
+
+std::vector<MasterCommands> bad_cycles_beyond_an_octet() {
+  return {{order(MasterWord::bad, {{0, kBadCyclesBeyondAnOctet - 1}}), cycles(1),
+           order(MasterWord::bad, {{0, kBadCyclesBeyondAnOctet}})}};
+}
+
+// Slowly, so that few status telegrams fill a pause of seconds.
+void be_slow(interbus::Rules& rules) {
+  rules.bit_rate = 10'000;
+  rules.software_time = 40 * kernel::kMillisecond;
+}
+
+// Beyond 2^32 ns.
+std::vector<MasterCommands> cycle_times_of_seconds() {
+  return {{order(MasterWord::power, {{0, 0}, {3, 4'400}}), cycles(1)}};
 }
 
 void take_wide_rings(interbus::Rules& rules) {
@@ -147,6 +169,12 @@ std::vector<MasterCase> master_cases_at_length() {
       compared("20_bad_cycles_in_a_row", "19 bad cycles, and 20, where 20 stop the bus.",
                {{"counts_bad_cycles_in_4_bits", "state_missing"}},
                each_beside(many_bad_cycles, 1, stop_after_many)),
+      compared("300_bad_cycles_in_a_row", "299 bad cycles, and 300, where 300 stop the bus.",
+               {{"counts_bad_cycles_in_8_bits", "state_missing"}},
+               each_beside(bad_cycles_beyond_an_octet, 1, stop_after_more_than_an_octet)),
+      compared("cycle_times_beyond_4_s", "A cycle time of 4.4 s is requested.",
+               {{"cycle_time_in_32_bits", "cycle_time_wrong"}},
+               each_beside(cycle_times_of_seconds, 1, be_slow)),
       compared("words_beyond_256", "A ring of 320 words, of which the application writes single ones.",
                {{"writes_256_words", "cycle_wrong"}}, each_beside(words_beyond_an_octet, 1, take_wide_rings)),
       compared("id_cycles_asked_for_twice", "Two orders for an ID cycle before one begins.",

@@ -34,6 +34,16 @@ struct Writes256Words final : Master {
   }
 };
 
+struct CycleTimeIn32Bits final : Master {
+  explicit CycleTimeIn32Bits(MasterConfiguration configuration) : Master(cut(std::move(configuration))) {}
+
+ private:
+  static MasterConfiguration cut(MasterConfiguration configuration) {
+    configuration.cycle_time %= (std::int64_t{1} << 32) * kernel::kNanosecond;
+    return configuration;
+  }
+};
+
 // It meets each order by an ID cycle of its own.
 struct OrdersOfIdCyclesAddUp final : Master {
   using Master::Master;

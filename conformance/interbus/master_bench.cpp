@@ -48,11 +48,12 @@ MasterBench::~MasterBench() = default;
 void MasterBench::power_up(std::vector<VirtualStation> ring) {
   if (master_ != nullptr) {
     stop();
-    // What is still on its way arrives; no station of the old ring is driven any more.
+    // What is still on its way arrives, and the last cycle ends; no station of the old ring is driven any
+    // more.
     back_->set_connected(false);
     master_->on_cycle_end({});
     ring_->set_script({});
-    run_for(10 * kernel::kMillisecond);
+    run_for(std::max<kernel::Duration>(10 * kernel::kMillisecond, 2 * status().cycle_time));
     master_->end();
   }
   configuration_.rules = rules_;
@@ -181,7 +182,9 @@ bool MasterBench::run_cycle() {
   }
   id_cycles_in_a_row_ = finished_.is_data ? 0 : id_cycles_in_a_row_ + 1;
   if (finished_.is_data) ordered_id_cycles_ = 0;
-  return id_cycles_in_a_row_ <= kMostIdCycles + 8 * ring_->stations().size() + ordered_id_cycles_;
+  // ID cycles that come back bad go on until they stop the bus.
+  return id_cycles_in_a_row_ <=
+         kMostIdCycles + rules_.stop_after_bad_cycles + 8 * ring_->stations().size() + ordered_id_cycles_;
 }
 
 void MasterBench::run_to_cycle(std::uint64_t number) {

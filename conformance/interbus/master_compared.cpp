@@ -2,6 +2,7 @@
 
 #include <array>
 #include <initializer_list>
+#include <numeric>
 #include <span>
 #include <utility>
 
@@ -35,7 +36,7 @@ std::vector<MasterCommands> each_value_for_a_master() {
     }
   }
   for (std::int64_t limits = 1; limits <= 6; ++limits) {
-    for (const std::int64_t number : {0, 5})
+    for (const std::int64_t number : {std::int64_t{0}, std::int64_t{5}, kDeepRing})
       all.push_back({order(MasterWord::power, {{0, number}, {5, limits}})});
   }
   all.push_back({order(MasterWord::power, {{0, 4}, {3, 1}})});
@@ -176,7 +177,10 @@ std::vector<MasterCommands> each_ring() {
   constexpr std::int64_t kRings = 7;
   constexpr std::int64_t kMostStations = 4;
   std::vector<MasterCommands> all;
-  for (std::int64_t number = 0; number < kRings; ++number) {
+  std::vector<std::int64_t> rings(kRings);
+  std::iota(rings.begin(), rings.end(), 0);
+  rings.push_back(kDeepRing);
+  for (const std::int64_t number : rings) {
     for (std::int64_t copies = 0; copies < 4; ++copies) {
       all.push_back({order(MasterWord::power, {{0, number}, {1, 1}, {2, copies}}),
                      order(MasterWord::inputs, {{0, 0x1234}, {1, 0x8765}}),
@@ -255,7 +259,8 @@ void change_times_of_a_master(interbus::Rules& rules) {
 std::vector<MasterCase> master_compared_cases() {
   return {
       compared("each_value_of_each_word", "Each word of sequences with each boundary value, in run.",
-               {{"first_station_first", "cycle_wrong"}}, each_beside(each_value_for_a_master, 160)),
+               {{"first_station_first", "cycle_wrong"}, {"each_branch_is_level_2", "state_wrong"}},
+               each_beside(each_value_for_a_master, 166)),
       compared("each_fault_on_the_way_back",
                "A data cycle and an ID cycle come back with a level flipped or a telegram lost.",
                {{"telegrams_without_gap", "cycle_time_wrong"},
@@ -277,7 +282,7 @@ std::vector<MasterCase> master_compared_cases() {
                 {"third_copy_lost", "cycle_wrong"},
                 {"copies_zero_for_no_word", "cycle_wrong"},
                 {"lone_station_not_placed", "state_wrong"}},
-               each_beside(each_ring, 56)),
+               each_beside(each_ring, 64)),
       compared("orders_in_each_state",
                "Start, stop, an ID cycle and an output are ordered in each state but run.",
                {{"stop_before_run_ignored", "not_silent"},

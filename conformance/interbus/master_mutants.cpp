@@ -17,6 +17,8 @@ unsigned never_beyond(const interbus::Rules& rules, unsigned most) {
   return rules.stop_after_bad_cycles > most ? 1'000'000 : rules.stop_after_bad_cycles;
 }
 
+constexpr unsigned kDeepestRing = 30;
+
 std::vector<MasterMutants::Row> master_rows() {
   using namespace seeded_faults;
   using interbus::Rules;
@@ -138,6 +140,15 @@ std::vector<MasterMutants::Row> master_rows() {
       {"counts_bad_cycles_in_4_bits", "", "counts bad cycles in a row in four bits",
        with_rules<interbus::Master>(
            [](Rules& rules) { rules.stop_after_bad_cycles = never_beyond(rules, 15); })},
+      {"counts_bad_cycles_in_8_bits", "", "counts bad cycles in a row in eight bits",
+       with_rules<interbus::Master>(
+           [](Rules& rules) { rules.stop_after_bad_cycles = never_beyond(rules, 255); })},
+      {"cycle_time_in_32_bits", "", "keeps the cycle time that is requested in 32 bits of nanoseconds",
+       mutant<CycleTimeIn32Bits>()},
+      {"each_branch_is_level_2", "", "takes a branch of a branch for one of the second level",
+       with_rules<interbus::Master>([](Rules& rules) {
+         if (rules.max_levels > 1) rules.max_levels = kDeepestRing;
+       })},
       {"orders_of_id_cycles_add_up", "", "meets two orders for an ID cycle by two of them",
        mutant<OrdersOfIdCyclesAddUp>()},
       {"stop_before_run_ignored", "", "ignores a stop in any state but run", mutant<StopBeforeRunIgnored>()},

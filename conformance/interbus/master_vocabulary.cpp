@@ -216,6 +216,12 @@ std::vector<VirtualStation> ring_of_twelve() {
           {0x0008, 0, 7, false},  {0x01BE, 1, 8, true},  {0x01BE, 1, 9, false}, {0x0103, 1, 8, false}};
 }
 
+// Each coupler of a branch has the next one on its branch; then what follows each of them on its own level.
+std::vector<VirtualStation> ring_of_four_levels() {
+  return {{0x0008, 0, -1, false}, {0x0008, 0, 0, true},  {0x0008, 0, 1, true}, {0x01BE, 1, 2, true},
+          {0x0103, 1, 2, false},  {0x0203, 2, 1, false}, {0x0103, 1, 0, false}};
+}
+
 }  // namespace
 
 std::vector<VirtualStation> ring_of(std::int64_t number) {
@@ -236,6 +242,8 @@ std::vector<VirtualStation> ring_of(std::int64_t number) {
       return ring_of_twelve();
     case kWideRing:
       return interbus::line_of(10, 0x1403, 32);
+    case kDeepRing:
+      return ring_of_four_levels();
     default:
       return {{0x0103, 1, -1, false}, {0x0008, 0, 0, false}, {0x01BE, 1, 1, true}, {0x0203, 2, 1, false}};
   }

@@ -34,10 +34,12 @@ SequenceVocabulary master_vocabulary();
 // What a master of a sequence is given.
 interbus::MasterConfiguration configuration_of_sequence(const field::Settings& settings);
 
-// Numbers of a "power" command that are never drawn: rings of twelve stations and of 320 words; and from
-// where on the configuration expects another station, the first one, the next ...
+// Numbers of a "power" command that are never drawn: rings of twelve stations, of 320 words, and with
+// branches of branches; and from where on the configuration expects another station, the first one, the next
+// ...
 inline constexpr std::int64_t kLongRing = 20;
 inline constexpr std::int64_t kWideRing = 21;
+inline constexpr std::int64_t kDeepRing = 22;
 inline constexpr std::int64_t kAnotherExpected = 20;
 
 // The rings that masters find, by number.
