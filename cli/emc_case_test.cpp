@@ -176,8 +176,28 @@ TEST_F(StoredEmc, ReplayAndShrinkSayWhatIsNotAsStored) {
   write("reference.json", test.dump());
   const Called shrunk = call({"shrink", "reference.json"});
   EXPECT_EQ(shrunk.exit_code, kDiffers);
-  EXPECT_HOLDS(shrunk.out, "the stored test does not fail: nothing to shrink");
+  EXPECT_HOLDS(shrunk.out, "the stored test does not fail with 'stopped' this time: nothing to shrink");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "reference.shrunk.json"));
+}
+
+// An implementation that goes while it is shrunk: another reason is not the stored one, and the stored one is
+// shown with what was changed until then.
+TEST_F(StoredEmc, OfAnImplementationThatGoesIsShrunkForThatReasonOnly) {
+  const std::string station =
+      std::string(FIELDPROOF_EXE) + " station valve_bus/node mutant:write_not_checked\n";
+  write("node.sh", "exec " + station);
+  std::vector<std::string> test = bursts("20s", "-");
+  test.insert(test.end(), {"--worst", "A"});
+  ASSERT_EQ(emc("valve_bus", "node@3=exec:sh node.sh", test).exit_code, kFailed);
+  write("node.sh", "dd bs=1 count=20000 status=none | " + station);
+  const Called shrunk = call({"shrink", "out/valve_bus-1-1.case.json", "--case", "small.json"});
+  EXPECT_EQ(shrunk.exit_code, kDiffers) << shrunk.out << shrunk.err;
+  EXPECT_HOLDS(shrunk.out, "this time: nothing to shrink");
+  nlohmann::json stored = json("out/valve_bus-1-1.case.json");
+  stored["reason"] = "implementation_crashed";
+  write("gone.json", stored.dump());
+  EXPECT_HOLDS(call({"shrink", "gone.json", "--case", "small.json"}).out, "shrunk from 20.000 s");
+  EXPECT_EQ(json("small.json").at("reason"), "implementation_crashed");
 }
 
 // Whatever is known by then is written, and replays.

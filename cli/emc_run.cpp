@@ -45,12 +45,13 @@ class WindowedChannel final : public fault::Channel {
 EmcRun run_emc_case(const EmcCase& test, const emc::LineResponse& response, bool is_recorded,
                     std::stop_token stop) {
   EmcRun run;
+  run.dissector = std::make_shared<trace::PlainDissector>();
+  std::unique_ptr<network::Network> network;
   const auto struck = std::make_shared<FlippedBits>();
   emc::ImmunitySettings settings = immunity_settings(test, std::move(stop));
   try {
-    const std::unique_ptr<network::Network> network = test.network->make(test.seed);
-    run.dissector = network->dissector();
-    if (!run.dissector) run.dissector = std::make_shared<trace::PlainDissector>();
+    network = test.network->make(test.seed);
+    if (auto dissector = network->dissector()) run.dissector = std::move(dissector);
     settings.around = [&](fault::Channel& channel, const network::Place& place) {
       // Where levels are finer than bits, as half bits are, each is looked at.
       const std::int64_t bit_rate = run.dissector->bit_rate();
@@ -62,10 +63,14 @@ EmcRun run_emc_case(const EmcCase& test, const emc::LineResponse& response, bool
     if (is_recorded) trace.set_recorder(&recorder);
     run.result = emc::run_immunity(*network, response, settings);
     trace.set_recorder(nullptr);
-    for (trace::Channel n = 0; n < trace.channel_count(); ++n) run.channels.push_back(trace.channel_name(n));
     run.recording = recorder.take();
   } catch (const iut::Misbehaviour& misbehaviour) {
     run.result = end_by(misbehaviour);
+  }
+  // Also of a run that ended by what an implementation did: what was changed until then is shown.
+  if (network) {
+    const trace::Trace& trace = network->segment().trace();
+    for (trace::Channel n = 0; n < trace.channel_count(); ++n) run.channels.push_back(trace.channel_name(n));
   }
   run.struck = std::move(*struck);
   return run;

@@ -37,6 +37,16 @@ TEST_F(Interrupted, BySigtermWritesThePartialResult) {
   EXPECT_HOLDS(read("stopped/results.json"), "interrupted by SIGTERM");
 }
 
+// As `timeout` does: to the program, and to its group.
+TEST_F(Interrupted, ByTheSameRequestTwiceWritesThePartialResult) {
+  Call interrupted = call({"run", "odd/slow/**", "--out", "stopped", "--jobs", "1"});
+  interrupted.signal = SIGTERM;
+  interrupted.signals = 2;
+  interrupted.signal_after = "case_02";
+  EXPECT_EQ(interrupted.run().exit_code, 143);
+  EXPECT_HOLDS(read("stopped/results.json"), "interrupted by SIGTERM");
+}
+
 TEST_F(Interrupted, BySigkillKeepsEveryVerdictThatWasPrinted) {
   Call killed = call({"run", "odd/slow/**", "--out", "killed", "--jobs", "2", "--seed", "5"});
   killed.signal = SIGKILL;

@@ -45,11 +45,13 @@ class EmcShrink {
   EmcShrink(EmcCase stored, std::stop_token stop)
       : response_(stored.bursts.profile.coupling), smallest_(std::move(stored)), stop_(std::move(stop)) {}
 
-  // As it is stored; false: it does not fail, or time is over.
+  // As it is stored; false: it does not fail so, or time is over.
   bool run_stored() {
     last_ = run(smallest_);
-    if (!last_.result.is_complete || last_.result.criterion <= smallest_.worst) return false;
-    smallest_.end = end_of(last_.result);
+    const EmcEnd now = end_of(last_.result);
+    if (!last_.result.is_complete || now.criterion <= smallest_.worst || now.reason != smallest_.end.reason)
+      return false;
+    smallest_.end = now;
     struck_ = last_.struck.size();
     return true;
   }
@@ -202,11 +204,15 @@ int shrink_emc(Session& session, const std::filesystem::path& file) {
   const Interruption interruption(session.settings.duration("max-time"));
   session.terminal.print(header_of(session, stored));
   const kernel::Duration duration = stored.duration;
+  const std::string stored_reason = stored.end.reason;
   EmcShrink shrinking(std::move(stored), interruption.token());
   const bool fails = shrinking.run_stored();
   const bool is_stopped = interruption.token().stop_requested();
   if (!fails && !is_stopped) {
-    session.terminal.print(end_text(shrinking.last()) + "the stored test does not fail: nothing to shrink\n");
+    session.terminal.print(
+        end_text(shrinking.last()) +
+        fmt::format("the stored test does not fail with '{}' this time: nothing to shrink\n",
+                    reports::escaped_line(stored_reason)));
     return kDiffers;
   }
   if (fails) shrinking.shrink();

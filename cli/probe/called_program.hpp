@@ -31,6 +31,7 @@ struct Call {
   bool on_terminal = false;  // standard output and error are one terminal; `out` holds both
   int signal = 0;            // sent when the output holds `signal_after`
   std::string signal_after;
+  int signals = 1;  // how often it is sent, at once
 
   Called run() const;
 
@@ -96,7 +97,7 @@ inline Called Call::run() const {
       if (!read_some(open_ends[i].fd, i == 0 ? called.out : called.err)) open_ends[i].fd = -1;
     }
     if (!is_sent && called.out.find(signal_after) != std::string::npos) {
-      kill(child, signal);
+      for (int n = 0; n < signals; ++n) kill(child, signal);
       is_sent = true;
     }
   }
