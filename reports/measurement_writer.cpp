@@ -211,9 +211,12 @@ std::string measurement_text(const measure::Measurement& measurement) {
   }
   for (const std::string& failure : measurement.failures)
     text += fmt::format("\nfail: {}\n", escaped_line(failure));
-  const bool is_disturbed = agreement(measurement, measure::Phase::burst).has_value();
+  const bool is_disturbed = agreement(measurement, measure::Phase::burst).has_value() ||
+                            agreement(measurement, measure::Phase::recovery).has_value();
   text += fmt::format("\ntheory and measurement{}: {} (tolerance {} %)\n", is_disturbed ? " while quiet" : "",
                       name(agreement(measurement)), measurement.tolerance_percent);
+  if (!agreement(measurement, measure::Phase::quiet))
+    text += "  nothing was compared while quiet: the network was never quiet, or nothing was measured\n";
   for (const measure::Phase phase : {measure::Phase::burst, measure::Phase::recovery}) {
     if (const auto of_phase = agreement(measurement, phase)) {
       text += fmt::format("  the same, {}: {}; the closed forms are those of a quiet network\n", name(phase),

@@ -5,8 +5,8 @@
 namespace fieldproof::measure {
 
 Agreement agreement(const Measurement& measurement) {
-  const Agreement worst = measurement.is_complete ? Agreement::holds : Agreement::open;
-  return std::max(worst, agreement(measurement, Phase::quiet).value_or(worst));
+  const Agreement least = measurement.is_complete ? Agreement::holds : Agreement::open;
+  return std::max(least, agreement(measurement, Phase::quiet).value_or(Agreement::open));
 }
 
 std::optional<Agreement> agreement(const Measurement& measurement, Phase phase) {

@@ -85,7 +85,8 @@ struct Measurement {
   std::vector<std::string> failures;  // "50 Hz: the bus stopped for good ..."
 };
 
-// Over everything that was compared while the network was quiet; open where something could not be. The
+// Over everything that was compared while the network was quiet; open where something could not be, or where
+// nothing was: bursts that follow each other faster than the network recovers leave no quiet phase. The
 // theory is that of a quiet network: what bursts and recovery make of it stands beside it, and refutes
 // nothing.
 Agreement agreement(const Measurement& measurement);
