@@ -5,6 +5,7 @@
 namespace fieldproof::network {
 
 void Turnaround::on_wave(const line::Waveform& wave) {
+  if (wave.start > other_begins_) asked_.reset();
   if (!asked_) return;
   std::size_t level = 0;
   while (begin_ == AnswerBegin::start_level && level < wave.levels.size() && wave.levels[level]) ++level;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -13,8 +14,8 @@
 // among the cycles of the network.
 //
 // Contract: of each question the first transmission that begins after it is the answer, whatever it says. A
-// question that nothing answers before the next one is not counted; nor is what begins before a question
-// ends.
+// question that nothing answers before the next one, or before somebody else begins a frame, is not counted;
+// nor is what begins before a question ends.
 namespace fieldproof::network {
 
 // Where an answer begins in what a station drives.
@@ -30,7 +31,13 @@ class Turnaround final : public segment::Tap {
   Turnaround(AnswerBegin begin, OnAnswer on_answer) : begin_(begin), on_answer_(std::move(on_answer)) {}
 
   // The question ends then.
-  void ask(kernel::Time end) { asked_ = end; }
+  void ask(kernel::Time end) {
+    asked_ = end;
+    other_begins_ = kernel::kNever;
+  }
+  // A frame begins then, of anybody: what begins later answers something else. It may be said before the
+  // frame is seen here.
+  void expire(kernel::Time begin) { other_begins_ = std::min(other_begins_, begin); }
   void forget() { asked_.reset(); }
   void on_wave(const line::Waveform& wave) override;
 
@@ -38,6 +45,7 @@ class Turnaround final : public segment::Tap {
   AnswerBegin begin_;
   OnAnswer on_answer_;
   std::optional<kernel::Time> asked_{};
+  kernel::Time other_begins_ = kernel::kNever;
 };
 
 }  // namespace fieldproof::network

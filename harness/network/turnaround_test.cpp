@@ -46,6 +46,17 @@ TEST_F(TurnaroundTest, AnAnswerBeginsWithItsStartBitWhereTheDriverIsOnBefore) {
   EXPECT_EQ(seen_, (std::vector<std::int64_t>{34}));
 }
 
+TEST_F(TurnaroundTest, WhatBeginsAfterAFrameOfSomebodyElseAnswersThat) {
+  Turnaround one = meter(AnswerBegin::first_level);
+  one.ask(kStart + 100 * kMicrosecond);
+  one.expire(kStart + 120 * kMicrosecond);
+  one.on_wave(wave_at(150, 0, 8));
+  one.ask(kStart + 200 * kMicrosecond);
+  one.expire(kStart + 230 * kMicrosecond);
+  one.on_wave(wave_at(230, 0, 8));
+  EXPECT_EQ(seen_, (std::vector<std::int64_t>{30})) << "its own frame is the answer";
+}
+
 TEST_F(TurnaroundTest, AQuestionThatNobodyAnswersIsNotCounted) {
   Turnaround one = meter(AnswerBegin::first_level);
   one.ask(kStart + 100 * kMicrosecond);

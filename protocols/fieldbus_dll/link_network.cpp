@@ -355,7 +355,11 @@ Duration LinkNetwork::lead() const {
 
 void LinkNetwork::on_wave(const line::Waveform& wave) {
   driven_until_ = std::max(driven_until_, wave.end());
-  for (const Arrived& arrived : tester_.receive(wave)) on_driven(arrived.octets, arrived.begin, arrived.end);
+  for (const Arrived& arrived : tester_.receive(wave)) {
+    for (Seat& seat : seats_)
+      if (seat.turnaround) seat.turnaround->expire(wave.start);
+    on_driven(arrived.octets, arrived.begin, arrived.end);
+  }
 }
 
 void LinkNetwork::on_called(std::size_t signal, Time begin, Time end) {
