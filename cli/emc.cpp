@@ -63,7 +63,8 @@ class Campaign {
     done_.protocol = row_.name;
     done_.network = network_->name();
     done_.exchange = network_->exchange();
-    done_.implementations = fmt::format("{}", fmt::join(settings.list("iut"), " "));
+    const std::string players = players_of(stored_.request.implementations);
+    done_.implementations = players.empty() ? conformance::kReferenceUri : players;
     done_.profile = settings.origin("profile") == Origin::fallback
                         ? emc::Profile::named(network_->default_profile())
                         : profile_from(settings);

@@ -99,16 +99,6 @@ class BurstsWhileMeasuring {
   emc::BurstClamp clamp_;
 };
 
-// Those that are no references, with blanks between them.
-std::string other_stations(const Settings& settings) {
-  std::vector<std::string> others = settings.list("iut");
-  std::erase_if(others, [](const std::string& text) {
-    return text == conformance::kReferenceUri ||
-           text.ends_with(fmt::format("={}", conformance::kReferenceUri));
-  });
-  return fmt::format("{}", fmt::join(others, " "));
-}
-
 measure::Measurement measured_by(Session& session, std::stop_token stop) {
   const ProtocolEntry& row = network_entry_of(session, "measure");
   const std::unique_ptr<conformance::PlannedNetwork> planned = plan_network(session, row);
@@ -128,7 +118,7 @@ measure::Measurement measured_by(Session& session, std::stop_token stop) {
   measure::Measurement measured =
       network::measure_network([&](std::uint64_t seed) { return planned->make(seed); }, settings);
   session.terminal.end_progress();
-  measured.implementations = other_stations(session.settings);
+  measured.implementations = players_of(network_implementations(session, row));
   return measured;
 }
 

@@ -58,6 +58,15 @@ bool is_no_reference(const conformance::Assignment& one) {
   return one.uri != conformance::kReferenceUri;
 }
 
+std::string players_of(const std::vector<conformance::Assignment>& implementations) {
+  std::string text;
+  for (const conformance::Assignment& one : implementations) {
+    if (!is_no_reference(one)) continue;
+    text += fmt::format("{}{}@{}={}", text.empty() ? "" : " ", one.role, std::max(one.position, 1), one.uri);
+  }
+  return text;
+}
+
 std::string players_text(const std::vector<conformance::Assignment>& implementations) {
   std::string text;
   for (const conformance::Assignment& one : implementations) {

@@ -24,6 +24,8 @@ conformance::NetworkRequest network_request(const Session& session, const Protoc
 std::unique_ptr<conformance::PlannedNetwork> plan_network(const Session& session, const ProtocolEntry& entry);
 
 bool is_no_reference(const conformance::Assignment& one);
+// "node@2=exec:./node slave@3=plugin:./x.so", as `--iut` takes it; empty where nobody else plays.
+std::string players_of(const std::vector<conformance::Assignment>& implementations);
 // "in it: node@2 (exec:./node); whoever is not named is a reference"; empty where nobody else plays.
 std::string players_text(const std::vector<conformance::Assignment>& implementations);
 

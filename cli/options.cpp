@@ -62,7 +62,7 @@ constexpr std::array kOptions = {
     Option{"repetition", list, "R,R...", "5kHz,100kHz", "emc", "5kHz, 100kHz, or 2.5kHz of edition 1", false, true},
     Option{"polarity", list, "+,-", "+,-", "emc", "of all pulses of a test", false, true},
     Option{"channel", list, "bsc:P,...", "", "emc", "instead of bursts, a channel on which each bit flips with this chance, to hold the frame check's theory against", false, true},
-    Option{"profile", value, "NAME|FILE", "A", "measure emc", "installation and receivers: A, A2, A3, B, B2, C, D, E, E2, F or a file", false, true},
+    Option{"profile", value, "NAME|FILE", "of the protocol", "measure emc", "installation and receivers: A, A2, A3, B, B2, C, D, E, E2, F or a file", false, true},
     Option{"worst", value, "A|B|C", "B", "emc", "the worst performance criterion that does not fail", false, true},
     Option{"bursts", value, "L[,R[,P]]", "", "measure", "bursts while measuring, as 3 or x:1000,100kHz,-; quiet, burst and recovery are reported separately", false, true},
     Option{"latch", value, "M1|M2|M3", "M2", "measure emc", "when INTERBUS slaves sample inputs: M1 at the latch of outputs, M2 at the start of a frame, M3 at the end of the one before", false, true},

@@ -59,14 +59,20 @@ void judge_bursts(const Document& tests, char worst_allowed, Said& said) {
   // A stop is a C at least.
   add(tests_that(tests, [](const Document& test) { return test.at("bus_stops") > 0; }), beyond('C'),
       "the bus stopped");
-  add(has_criterion('D'), beyond('D'), "criterion D");
+  // One that crashed or hung has accepted nothing wrong: its D is another one.
+  const auto has_gone = [](const Document& test) {
+    return test.at("came_up") == true && !test.value("complaint", std::string()).empty();
+  };
+  add(tests_that(tests, has_gone), beyond('D'), "an implementation did not go on");
+  add(has_criterion('D') - tests_that(tests, has_gone), beyond('D'), "criterion D");
   add(has_criterion('C'), beyond('C'), "criterion C");
   if (worst_allowed < 'B') add(has_criterion('B'), Verdict::fail, "criterion B");
   add(tests_that(tests, [](const Document& test) { return test.at("came_up") == false; }),
       Verdict::inconclusive, "the network did not come up");
   add(tests_that(tests,
-                 [](const Document& test) {
-                   return test.at("came_up") == true && test.at("evidence").at("text") == "";
+                 [&has_gone](const Document& test) {
+                   return test.at("came_up") == true && test.at("evidence").at("text") == "" &&
+                          !has_gone(test);
                  }),
       Verdict::inconclusive, "no burst met a receiver");
   if (said.sentence.empty()) add(has_criterion('B'), Verdict::warn, "criterion B at worst,");
@@ -132,6 +138,13 @@ Said said_by_measurement(const Document& document) {
   }
   const std::string of = fmt::format("of {}", several(compared, "comparison"));
   if (document.at("agreement") == "holds") return {Verdict::pass, "the measurement agrees with the theory"};
+  const auto is_quiet = [](const Document& one) { return one.value("phase", "quiet") == "quiet"; };
+  const auto has_quiet = [&](const Document& series) {
+    return std::ranges::any_of(series.at("comparisons"), is_quiet);
+  };
+  if (std::ranges::none_of(document.at("series"), has_quiet))
+    return {Verdict::inconclusive,
+            "nothing was measured while the network was quiet, so no theory was tested"};
   if (document.at("agreement") == "open") {
     return {
         Verdict::inconclusive,

@@ -116,6 +116,27 @@ TEST(JoinedVerdict, BurstsThatMetNoReceiverAndChannelsThatStoppedAreNoPass) {
   EXPECT_EQ(of_document(emc).verdict, Verdict::inconclusive);
 }
 
+// It has accepted nothing wrong, and no burst has to have met anybody.
+TEST(JoinedVerdict, AnImplementationThatEndsATestIsSaidToHave) {
+  OrderedJson emc = quiet_emc();
+  emc["tests"][0]["criterion"] = "D";
+  emc["tests"][0]["complaint"] = "implementation_hangs: it has not answered within 2000 ms";
+  emc["tests"][0]["evidence"]["text"] = "";
+  EXPECT_EQ(of_document(emc).verdict, Verdict::fail);
+  EXPECT_EQ(of_document(emc).documents[0].sentence, "an implementation did not go on in 1 of 16 burst tests");
+}
+
+TEST(JoinedVerdict, AMeasurementThatWasNeverQuietTestsNoTheory) {
+  OrderedJson measurement = OrderedJson::parse(measurement_json(sample_measurement()));
+  measurement["failures"] = OrderedJson::array();
+  measurement["agreement"] = "open";
+  for (OrderedJson& series : measurement["series"])
+    for (OrderedJson& one : series["comparisons"]) one["phase"] = "burst";
+  EXPECT_EQ(of_document(measurement).verdict, Verdict::inconclusive);
+  EXPECT_EQ(of_document(measurement).documents[0].sentence,
+            "nothing was measured while the network was quiet, so no theory was tested");
+}
+
 TEST(JoinedVerdict, OtherDocumentsCountAsWell) {
   OrderedJson measurement = OrderedJson::parse(measurement_json(sample_measurement()));
   for (const auto& [agreement, verdict] :

@@ -139,11 +139,14 @@ function rowsOfBursts({ name, content }) {
     const stops = tests.filter((test) => test.bus_stops > 0).length;
     const references = judged.filter(({reference}) => reference?.came_up).map(({reference}) => reference.criterion).sort().at(-1);
     const beside = references && (references === worst ? "references alone the same" : `references alone ${references}`);
-    const said = [worst && `criterion ${worst}`, beside, stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
+    const gone = tests.filter((test) => test.came_up && test.complaint);
+    const said = [worst && `criterion ${worst}`, beside, gone.length > 0 && `the implementation did not go on in ${part(gone.length, tests.length)} tests: ${gone[0].complaint}`, stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
       judged.length < tests.length && `the network did not come up in ${part(tests.length - judged.length, tests.length)} tests`];
     return {test: `${name}: bursts, level ${level}`, result: said.filter(Boolean).join(", "),
       limit: kLimits[content.worst_allowed ?? "B"], margin: ""};
   });
+  if (content.thresholds) rows.push({test: `${name}: from which voltage on each criterion was seen, by a search`,
+    result: content.thresholds.text, limit: "none", margin: ""});
   const recovered = content.tests.filter((test) => test.came_up && test.recovered_by_itself).map((test) => test.recovery_cycles);
   if (recovered.length > 0 && content.recovery_limit) {
     const { exchanges, exchange } = content.recovery_limit;

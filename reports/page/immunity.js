@@ -61,7 +61,7 @@ function balance(tests) {
   const column = (title, cell) => ({title, kind: "number", cell});
   return table("How each exchange ended, and what the criterion rests on", [
     ...whichTest, ...balanceColumns(column, tests),
-    {title: "rests on", kind: "text", cell: ({evidence, first_wrong}) => [evidence?.text, first_wrong && `the first ${first_wrong}`].filter(Boolean).join("; ")},
+    {title: "rests on", kind: "text", cell: ({complaint, evidence, first_wrong}) => [complaint, evidence?.text, first_wrong && `the first ${first_wrong}`].filter(Boolean).join("; ")},
     {title: "a longer run could still show (95 %)", kind: "text", cell: longerRun},
   ], tests, "many");
 }
@@ -110,7 +110,7 @@ function ledger(tests) {
     column("outputs cleared", ({ledger: one}) => number(one.cleared_outputs)),
     column("partly latched", ({ledger: one}) => number(one.partly_latched)),
     column("longest bad run", (test) => number(test.longest_bad_run)),
-    column("recovery, cycles", recoveryText),
+    column("recovery", recoveryText),
     column("bus stops", (test) => number(test.bus_stops)),
     column("wrong levels", ({line}) => number(line.wrong_levels)),
     column("transmissions hit", ({line}) => part(line.hit, line.transmissions)),
