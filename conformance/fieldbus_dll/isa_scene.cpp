@@ -54,7 +54,10 @@ IsaStep delivered(const std::string& what, std::string reason) {
 
 IsaStep delegated(const std::string& what) {
   return expected<IsaScene>(what, [what](IsaScene& scene) {
-    scene.answer = expect_next(scene.bench, scene.judge, "delegation_missing", what);
+    // It is sent within V(ST) of its instant.
+    const kernel::Time latest =
+        scene.bench.now() + scene.bench.observation_timeout() + 2 * scene.bench.slot();
+    scene.answer = expect_next(scene.bench, scene.judge, latest, "delegation_missing", what);
   });
 }
 
