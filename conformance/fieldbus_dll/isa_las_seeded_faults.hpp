@@ -312,6 +312,49 @@ class ClockOf32Bits : public IsaLas {
   }
 };
 
+class ItemsIn32Bits : public IsaLas {
+  using IsaLas::IsaLas;
+  Time due(const IsaScheduleItem& item) const override {
+    return IsaLas::due(item) - item.at / kOf32Bits * kOf32Bits;
+  }
+  static constexpr kernel::Duration kOf32Bits = (std::int64_t{1} << 32) * kernel::kNanosecond;
+};
+
+class DurationOf15Bits : public IsaLas {
+  using IsaLas::IsaLas;
+  Octets written(const IsaDlpdu& dlpdu) const override {
+    Octets octets = IsaLas::written(dlpdu);
+    if (dlpdu.type == IsaType::es) octets.at(3) &= 0x7FU;
+    return octets;
+  }
+};
+
+// The sign of life of who was handed the link has no priority, and is no DLPDU so.
+class ShowsItselfAsNothing : public IsaLas {
+  using IsaLas::IsaLas;
+  Octets written(const IsaDlpdu& dlpdu) const override {
+    Octets octets = IsaLas::written(dlpdu);
+    if (dlpdu.type == IsaType::du && dlpdu.data.empty() && dlpdu.destination == rules().everybody)
+      octets.at(0) &= 0xF0U;
+    return octets;
+  }
+};
+
+// Another scheduler ends its wait for a reply, and it says nothing of that.
+class SchedulerForReplyUntold : public IsaLas {
+  using IsaLas::IsaLas;
+  void on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) override {
+    is_of_other_ = dlpdu.destination != address() &&
+                   (dlpdu.type == IsaType::et || dlpdu.type == IsaType::es || dlpdu.type == IsaType::tl);
+    IsaLas::on_dlpdu(dlpdu, place);
+    is_of_other_ = false;
+  }
+  void tell(fieldbus_dll::IsaEventKind kind, std::uint8_t node, Time now) override {
+    if (kind != fieldbus_dll::IsaEventKind::token_dropped || !is_of_other_) IsaLas::tell(kind, node, now);
+  }
+  bool is_of_other_ = false;
+};
+
 class NothingAfterItsSchedule : public IsaLas {
  public:
   NothingAfterItsSchedule(const IsaConfiguration& configuration, bool begins_again)

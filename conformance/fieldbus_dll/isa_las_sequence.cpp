@@ -24,7 +24,8 @@ using fieldbus_dll::Priority;
 constexpr std::uint8_t kHeirOfIsaLas = 0x12;
 constexpr std::uint8_t kFirstOrdered = 0x13;
 constexpr std::uint8_t kLowerScheduler = 0x08;
-constexpr std::array<std::uint8_t, 4> kOtherSchedulers{0x30, kLowerScheduler, 0xF7, 0x0F};
+constexpr std::uint8_t kHigherScheduler = 0x30;
+constexpr std::array<std::uint8_t, 4> kOtherSchedulers{kHigherScheduler, kLowerScheduler, 0xF7, 0x0F};
 constexpr std::uint8_t kThirdSender = 0x2A;
 constexpr std::uint8_t kNoAddress = 0;
 constexpr int kMostBeforeTransfer = 6;
@@ -270,6 +271,10 @@ class IsaLasSequenceRun {
         return say(bench_.dt(Priority::urgent, {}, cd.octet(1)));
       case PeerAnswer::hands_over:
         return say(tl(bench_.address(), kThirdSender, 1));
+      case PeerAnswer::higher_scheduler:
+        return say(said_by_another(kHigherScheduler, 0));
+      case PeerAnswer::lower_scheduler:
+        return say(said_by_another(kLowerScheduler, 0));
     }
   }
 
@@ -434,6 +439,7 @@ const SequenceRole& isa_las_sequence_role() {
        {DerivedKind::states, {"retakes_early", "answers_too_early"}},
        {DerivedKind::repetitions, {"scheduler_never_replies", "no_reply"}},
        {DerivedKind::settings, {"transfer_without_version", "transfer_wrong"}},
+       {DerivedKind::drawn, {"scheduler_for_reply_untold", "not_delivered"}},
        {DerivedKind::drawn, {"schedule_early", "delegation_early"}}}};
   return role;
 }

@@ -142,8 +142,9 @@ SequenceVocabulary isa_las_vocabulary() {
             .meaning =
                 "the scheduler's user submits a CD; the station replies (0), is silent (1), sends a DU "
                 "(2), another replies (3), the reply is no DLPDU (4), ends after V(RR) (5), is urgent "
-                "(6), there is a TL in its place (7)",
-            .numbers = {priority_of_isa_las(), {"outcome", 0, 7, 0}},
+                "(6), there is a TL in its place (7), or an ET of a scheduler with a higher (8) or a lower "
+                "address (9)",
+            .numbers = {priority_of_isa_las(), {"outcome", 0, 9, 0}},
             .weight = 5},
            {.word = "again",
             .meaning = "a TL for the scheduler while it is that and a token is out",

@@ -46,7 +46,9 @@ enum class PeerAnswer : std::uint8_t {
   is_none,
   replies_late,
   replies_urgently,
-  hands_over
+  hands_over,
+  higher_scheduler,
+  lower_scheduler
 };
 
 fieldbus_dll::IsaSchedule schedule_of_isa_las();

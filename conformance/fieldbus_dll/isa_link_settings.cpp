@@ -27,8 +27,11 @@ void with_few_addresses(IsaConfiguration& configuration) {
 }
 void with_impossible_silence(IsaConfiguration& configuration) {
   const fieldbus_dll::LinkRules& link = configuration.rules.link;
-  configuration.rules.link.inter_pdu_delay_octets =
-      (link.response_delay_slots - 1) * link.slot_time_octets + 1;
+  const unsigned silence = (link.response_delay_slots - 1) * link.slot_time_octets + 1;
+  configuration.rules.link.inter_pdu_delay_octets = silence;
+  // Who started all the same would have time to reply.
+  configuration.rules.reply_forming_octets = 2 * silence;
+  configuration.rules.reply_wait_octets = 3 * silence;
 }
 
 IsaStep du_to(std::uint8_t destination) {
@@ -142,11 +145,22 @@ std::vector<IsaCase> isa_link_settings_cases() {
           {}, on_chart(
                   must_case("fieldbus_dll/isa_dle/settings/impossible_ones_are_refused", "ISA-41",
                             "V(MID) is at most (V(MRD) - 1) x V(ST).", vendors("range of V(MID)"),
-                            {{"impossible_rules_taken", "impossible_rules_taken"}}),
+                            {{"impossible_rules_taken", "impossible_rules_taken"},
+                             {"impossible_once_only", "impossible_rules_taken"}}),
                   {{},
                    {require(
                         "a station with V(MID) an octet above (V(MRD) - 1) x V(ST) does not start",
                         [](IsaScene& scene) { return !scene.bench.has_started(); }, "impossible_rules_taken"),
+                    cd(normal), silence("impossible_rules_taken", "the station has not started"),
+                    stimulus<IsaScene>("its supply goes and comes",
+                                       [](IsaScene& scene) {
+                                         scene.bench.set_supply(false);
+                                         scene.bench.wait(scene.bench.octets(100));
+                                         scene.bench.set_supply(true);
+                                       }),
+                    require(
+                        "it does not start then", [](IsaScene& scene) { return !scene.bench.has_started(); },
+                        "impossible_rules_taken"),
                     cd(normal), silence("impossible_rules_taken", "the station has not started")}},
                   {.change = with_impossible_silence})),
   };

@@ -232,6 +232,10 @@ std::vector<IsaRow> isa_setting_rows() {
        with_rules<IsaDle>([](IsaRules& rules) { ++rules.first_address; })},
       {"last_address_is_none", "", "takes the last address for none",
        with_rules<IsaDle>([](IsaRules& rules) { --rules.last_address; })},
+      {"longest_silence_refused", "", "does not start with a V(MID) of (V(MRD) - 1) x V(ST)",
+       mutant<isa_seeded_faults::LongestSilenceRefused>()},
+      {"impossible_once_only", "", "refuses a V(MID) that cannot be under its first supply only",
+       mutant<isa_seeded_faults::ImpossibleOnceOnly>()},
       {"impossible_rules_taken", "", "starts with a V(MID) that cannot be",
        mutant<link_seeded_faults::ImpossibleRulesTaken<IsaDle>>()},
   };
@@ -303,6 +307,7 @@ std::vector<IsaRow> isa_las_rows() {
       {"forgets_reply_wait", "", "does not count with the wait of a holder that compels",
        mutant<ForgetsReplyWait>()},
       {"ignores_transfer", "", "does not take over", mutant<IgnoresTransfer>()},
+      {"shows_itself_as_nothing", "", "takes over with a DU of priority 0", mutant<ShowsItselfAsNothing>()},
       {"shows_itself_late", "", "takes over and says nothing until its schedule does",
        mutant<ShowsItselfLate>()},
       {"schedule_not_begun", "", "takes over without running its schedule", mutant<ScheduleNotBegun>()},
@@ -349,6 +354,12 @@ std::vector<IsaRow> isa_las_rows() {
        mutant<OtherSchedule>(+[](fieldbus_dll::IsaSchedule& schedule) {
          schedule.period %= 0x1'0000'0000 * kernel::kNanosecond;
        })},
+      {"scheduler_for_reply_untold", "", "does not report that another scheduler came in place of a reply",
+       mutant<SchedulerForReplyUntold>()},
+      {"items_in_32_bits", "", "keeps the instants of its items in 32 bits of nanoseconds",
+       mutant<ItemsIn32Bits>()},
+      {"duration_of_15_bits", "", "sends the lower 15 bits of the duration of a token",
+       mutant<DurationOf15Bits>()},
       {"clock_of_32_bits", "", "runs no schedule after 2^32 microseconds", mutant<ClockOf32Bits>()},
       {"no_data_after_its_schedule", "", "sends nothing of its user's when its schedule is over",
        mutant<NothingAfterItsSchedule>(true)},

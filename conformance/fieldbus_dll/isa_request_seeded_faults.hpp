@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "conformance/fieldbus_dll/isa_seeded_faults.hpp"
 
@@ -89,6 +90,23 @@ class AnythingEndsTheWait : public IsaDle {
     return IsaDle::next_to_send(from, is_any ? Priority::time_available : least);
   }
   bool waits_ = false;
+};
+
+class LongestSilenceRefused : public IsaDle {
+  using IsaDle::IsaDle;
+  bool are_impossible() const override {
+    const auto& link = rules().link;
+    return IsaDle::are_impossible() ||
+           link.inter_pdu_delay_octets == (link.response_delay_slots - 1) * link.slot_time_octets;
+  }
+};
+
+class ImpossibleOnceOnly : public IsaDle {
+  using IsaDle::IsaDle;
+  bool are_impossible() const override {
+    return IsaDle::are_impossible() && !std::exchange(was_asked_, true);
+  }
+  mutable bool was_asked_ = false;
 };
 
 }  // namespace fieldproof::conformance::isa_seeded_faults

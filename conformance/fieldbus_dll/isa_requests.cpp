@@ -19,7 +19,8 @@ void expect_isa_refused(IsaScene& scene, bool is_taken, const std::string& what,
 void expect_no_isa_request_refused(IsaScene& scene) {
   IsaBench& bench = scene.bench;
   for (const Octets& request : {Octets{0x00}, Octets{0x02, 0x00, 0x02, 0x22, 0x41}, Octets{0x07, 0x01},
-                                Octets{0xFF, 0x00, 0x02, 0x22}, Octets{0x01, 0x00, 0x02}})
+                                Octets{0xFF, 0x00, 0x02, 0x22}, Octets{0x01}, Octets{0x01, 0x00},
+                                Octets{0x01, 0x00, 0x02}, Octets{0x01, 0x01, 0x02}, Octets{0x01, 0x02, 0x02}})
     expect_isa_refused(
         scene, bench.ask_user_request(request),
         fmt::format("a request of {} octets, {:02X} first, which there is not,", request.size(), request[0]),

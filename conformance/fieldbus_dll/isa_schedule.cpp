@@ -59,11 +59,13 @@ constexpr std::size_t kShort = 10;
 constexpr std::size_t kLong = 60;
 constexpr int kLeft = 40;  // octet durations, less than the long one needs
 
-// `latency`: farthest from its time.
-void expect_item(IsaScene& scene) {
+// Of the turn, as often as the schedule goes round. `latency`: farthest from its time.
+void expect_item_of(IsaScene& scene, const IsaSchedule& schedule) {
   IsaBench& bench = scene.bench;
-  const IsaScheduleItem item = ten_items().items.at(scene.turn);
-  const kernel::Time due = kernel::kStart + item.at;
+  const std::size_t count = schedule.items.size();
+  const IsaScheduleItem& item = schedule.items.at(scene.turn % count);
+  const kernel::Time due =
+      kernel::kStart + static_cast<std::int64_t>(scene.turn / count) * schedule.period + item.at;
   scene.answer = expect_next(bench, scene.judge, due + 2 * bench.slot(), "delegation_missing",
                              "the next item of the schedule");
   const DrivenDlpdu& one = scene.answer;
@@ -74,6 +76,10 @@ void expect_item(IsaScene& scene) {
   expect_begins(scene.judge, one, due - bench.slot(), "delegation_early", due + bench.slot(),
                 "delegation_late");
   scene.latency = std::max(scene.latency, one.begin < due ? due - one.begin : one.begin - due);
+}
+
+void expect_item(IsaScene& scene) {
+  expect_item_of(scene, ten_items());
   if (scene.turn == 9)
     scene.judge.measure("farthest from its time", "us",
                         static_cast<double>(scene.latency / kernel::kMicrosecond));
@@ -101,17 +107,16 @@ IsaSchedule many_items() {
 }
 
 void expect_one_of_many(IsaScene& scene) {
-  const IsaSchedule schedule = many_items();
-  const IsaScheduleItem& item = schedule.items.at(scene.turn % kManyItems);
-  const kernel::Time due = kernel::kStart + scene.turn / kManyItems * schedule.period + item.at;
-  scene.answer = expect_next(scene.bench, scene.judge, due + 2 * scene.bench.slot(), "delegation_missing",
-                             "the next item of the schedule");
-  const Octets right = octets_of_item(scene.bench, item);
-  scene.judge.expect(scene.answer.octets == right, "delegation_wrong", [&] {
-    return Mismatch{{fmt::format("{:02X}", fmt::join(right, " "))}, scene.answer.text(), scene.answer.begin};
-  });
-  expect_begins(scene.judge, scene.answer, due - scene.bench.slot(), "delegation_early",
-                due + scene.bench.slot(), "delegation_late");
+  expect_item_of(scene, many_items());
+}
+
+// Beyond 2^32 nanoseconds and 2^16 milliseconds, for longer than 2^15 octet durations.
+IsaSchedule items_of_minutes() {
+  return {.version = 1,
+          .period = {},
+          .items = {{5 * kernel::kSecond, IsaType::es, 0x21, Priority::normal, 40'000},
+                    {70 * kernel::kSecond, IsaType::et, 0x22, Priority::normal, 0},
+                    {20 * 60 * kernel::kSecond, IsaType::es, 0x23, Priority::urgent, 65'535}}};
 }
 
 // The third begins after more than 2^32 microseconds.
@@ -249,6 +254,23 @@ std::vector<IsaCase> isa_schedule_cases() {
                         "its holder returns it at once",
                         [](IsaScene& scene) { scene.reply(scene.bench.ee(scene.answer.octet(1))); })})}},
           {.schedule = many_items()}),
+      on_chart(must_in_time(
+                   "fieldbus_dll/isa_las/schedule/items_of_minutes_have_their_time", "ISA-29",
+                   "The scheduler delegates its token in the order and at the times of its schedule.",
+                   isa_paper("the link active scheduler passes the delegated token in scheduled order"),
+                   {{"items_in_32_bits", "delegation_early"}, {"duration_of_15_bits", "delegation_wrong"}},
+                   {{own("within one V(ST) of its time"),
+                     {"delegation_missing", "delegation_early", "delegation_late"}}}),
+               {{},
+                {repeat({3, 3}, {expected<IsaScene>(
+                                     "the tokens that are due after 5 s, 70 s and 20 min, two of them for "
+                                     "40000 and 65535 octet durations",
+                                     [](IsaScene& scene) { expect_item_of(scene, items_of_minutes()); }),
+                                 stimulus<IsaScene>("its holder returns it at once",
+                                                    [](IsaScene& scene) {
+                                                      scene.reply(scene.bench.ee(scene.answer.octet(1)));
+                                                    })})}},
+               {.schedule = items_of_minutes()}),
       on_chart(
           must_in_time("fieldbus_dll/isa_las/schedule/goes_round_for_hours", "ISA-29",
                        "The scheduler delegates its token in the order and at the times of its schedule.",

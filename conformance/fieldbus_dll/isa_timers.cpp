@@ -231,6 +231,7 @@ std::vector<IsaCase> isa_timers_cases() {
             9,
             60,
             {{"forms_within_eight_bits", "no_reply"}, {"waits_half_a_bit_less", "resumes_early"}}},
+           {24, 30, 40, 4, 8, {{"longest_silence_refused", "no_reply"}}},
            {63, 257, 4'096, 11, 512, {{"no_dlpdu_ends_the_wait", "no_reply"}}},
            {64, 128, 32'767, 11, 4'095, {{"waits_the_usual_time", "resumes_early"}}},
            {65, 32'768, 32'769, 11, 4'095, {{"silence_of_the_usual_link", "answers_too_early"}}},

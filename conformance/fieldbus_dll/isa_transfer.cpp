@@ -60,6 +60,8 @@ void expect_taken(IsaScene& scene) {
   const DrivenDlpdu first = expect_next(bench, scene.judge, "not_taken", "a DLPDU of the new scheduler");
   expect_begins(scene.judge, first, scene.sent + bench.least_gap(), "answers_too_early",
                 scene.sent + bench.reply_wait(), "taken_late");
+  scene.judge.expect(fieldbus_dll::isa_dlpdu_of(first.octets, bench.rules()).has_value(), "not_taken",
+                     "a DLPDU of the new scheduler", first.text());
   std::vector<DrivenDlpdu> tokens;
   if (is_scheduling(bench, first)) tokens.push_back(first);
   while (const auto one = bench.next(scene.sent + bench.octets(400)))
@@ -129,6 +131,7 @@ std::vector<IsaCase> isa_transfer_cases() {
                     isa_paper("TL: the scheduling token goes to another link master"),
                     {{"ignores_transfer", "not_taken"},
                      {"shows_itself_late", "taken_late"},
+                     {"shows_itself_as_nothing", "not_taken"},
                      {"schedule_not_begun", "schedule_not_run"}},
                     {{own("the first DLPDU within V(RR)"), {"taken_late"}},
                      {own("its schedule begins with the TL"), {"schedule_not_run"}}}),
