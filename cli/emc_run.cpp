@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "harness/trace/recording.hpp"
@@ -46,9 +47,10 @@ EmcRun run_emc_case(const EmcCase& test, const emc::LineResponse& response, bool
                     std::stop_token stop) {
   EmcRun run;
   run.dissector = std::make_shared<trace::PlainDissector>();
-  std::unique_ptr<network::Network> network;
   const auto struck = std::make_shared<FlippedBits>();
   emc::ImmunitySettings settings = immunity_settings(test, std::move(stop));
+  std::unique_ptr<network::Network> network;
+  std::optional<trace::BoundedRecorder> recorder;
   try {
     network = test.network->make(test.seed);
     if (auto dissector = network->dissector()) run.dissector = std::move(dissector);
@@ -58,19 +60,18 @@ EmcRun run_emc_case(const EmcCase& test, const emc::LineResponse& response, bool
       return watched(std::make_unique<WindowedChannel>(channel, test.windows, place.trace_channel, run),
                      place.name, bit_rate > 0 ? bit_rate : place.level_rate, struck);
     };
-    trace::Trace& trace = network->segment().trace();
-    trace::BoundedRecorder recorder(trace);
-    if (is_recorded) trace.set_recorder(&recorder);
+    recorder.emplace(network->segment().trace());
+    if (is_recorded) network->segment().trace().set_recorder(&*recorder);
     run.result = emc::run_immunity(*network, response, settings);
-    trace.set_recorder(nullptr);
-    run.recording = recorder.take();
   } catch (const iut::Misbehaviour& misbehaviour) {
     run.result = end_by(misbehaviour);
   }
-  // Also of a run that ended by what an implementation did: what was changed until then is shown.
-  if (network) {
-    const trace::Trace& trace = network->segment().trace();
+  // Also of a run that ended by what an implementation did: what was on the line until then is shown.
+  if (recorder) {
+    trace::Trace& trace = network->segment().trace();
+    trace.set_recorder(nullptr);
     for (trace::Channel n = 0; n < trace.channel_count(); ++n) run.channels.push_back(trace.channel_name(n));
+    run.recording = recorder->take();
   }
   run.struck = std::move(*struck);
   return run;

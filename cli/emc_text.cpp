@@ -230,8 +230,12 @@ std::string channel_line(const EmcTest& test) {
       fmt::format("{} {:>9} {:>9} {:>9} {:>9} {:>8} {:>6} {:>6}", where, counts.sent, counts.untouched,
                   counts.without_effect, counts.refused, test.result.longest_bad_run, test.result.stops,
                   counts.wrong_exchanges);
-  if (!test.has_theory()) return line + fmt::format(" {:>12} {:>8}\n", "-", "-");
-  return line + fmt::format(" {:>12.3g} {:>8.3g}\n", test.expected_wrong(), test.chance_of_count());
+  const std::string complaint = test.result.complaint.empty()
+                                    ? ""
+                                    : fmt::format("    {}\n", reports::escaped_line(test.result.complaint));
+  if (!test.has_theory()) return line + fmt::format(" {:>12} {:>8}\n", "-", "-") + complaint;
+  return line + fmt::format(" {:>12.3g} {:>8.3g}\n", test.expected_wrong(), test.chance_of_count()) +
+         complaint;
 }
 
 std::string frame_residual_text(const emc::FrameResidual& residual, std::uint64_t differed) {

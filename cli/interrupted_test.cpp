@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cli/probe/probe_fixture.hpp"
+#include "cli/probe/program_fixture.hpp"
 #include "harness/kernel/campaign.hpp"
 #include "harness/kernel/random.hpp"
 
@@ -17,6 +18,7 @@ namespace fieldproof::cli {
 namespace {
 
 using Interrupted = Program;
+using InterruptedProgram = ProgramFixture;
 
 TEST_F(Interrupted, BySigintWritesThePartialResult) {
   Call interrupted = call({"run", "odd/slow/**", "--out", "stopped", "--jobs", "1"});
@@ -41,10 +43,23 @@ TEST_F(Interrupted, BySigtermWritesThePartialResult) {
 TEST_F(Interrupted, ByTheSameRequestTwiceWritesThePartialResult) {
   Call interrupted = call({"run", "odd/slow/**", "--out", "stopped", "--jobs", "1"});
   interrupted.signal = SIGTERM;
-  interrupted.signals = 2;
+  interrupted.again_after = std::chrono::milliseconds(20);
   interrupted.signal_after = "case_02";
   EXPECT_EQ(interrupted.run().exit_code, 143);
   EXPECT_HOLDS(read("stopped/results.json"), "interrupted by SIGTERM");
+}
+
+// Nobody waits for an implementation that hangs: here it gets no call after the first ones.
+TEST_F(InterruptedProgram, ByASecondRequestASecondLaterEndsAtOnce) {
+  write("node.sh", "(dd bs=1 count=400 status=none; sleep 20) | " + std::string(FIELDPROOF_EXE) +
+                       " station valve_bus/node\n");
+  Call interrupted = prepared({"run", "valve_bus/node/**", "--out", "stopped", "--jobs", "1", "--iut",
+                               "exec:sh node.sh", "--call-limit", "1min"});
+  interrupted.signal = SIGTERM;
+  interrupted.again_after = std::chrono::milliseconds(1'300);
+  interrupted.signal_after = "fieldproof ";
+  EXPECT_EQ(interrupted.run().exit_code, 143);
+  EXPECT_EQ(read("stopped/results.json").find("interrupted by SIGTERM"), std::string::npos);
 }
 
 TEST_F(Interrupted, BySigkillKeepsEveryVerdictThatWasPrinted) {

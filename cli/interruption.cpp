@@ -19,7 +19,8 @@ namespace {
 constexpr char kSignalCame = 's';
 constexpr char kEnd = 'e';
 
-// A handler may touch lock-free atomics and call write, nothing else.
+// A handler may touch lock-free atomics and call what POSIX allows there: write, clock_gettime, signal,
+// raise.
 std::atomic<int> received{0};
 std::atomic<std::int64_t> received_at{0};  // ms
 std::atomic<int> wake_end{-1};

@@ -1,10 +1,11 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "cli/verbs.hpp"
 #include "conformance/assigned.hpp"
 #include "emc/burst_clamp.hpp"
+#include "harness/measure/cyclic_copy.hpp"
 #include "harness/measure/frequency.hpp"
 #include "harness/network/network_measurement.hpp"
 #include "reports/measurement_writer.hpp"
@@ -39,6 +41,30 @@ std::vector<measure::SquareWave> signals_from(const Settings& settings) {
     signals.push_back({.frequency = *frequency});
   }
   return signals;
+}
+
+// Of the usual signals those that the network can carry; where it carries none, one whose edges meet each
+// phase of its cycle.
+std::vector<measure::SquareWave> signals_for(const network::Network& network,
+                                             std::vector<measure::SquareWave> usual) {
+  constexpr double kMillihertzOfTheLimit = 437;
+  const std::span<const network::CycleKind> kinds = network.cycles();
+  if (kinds.empty() || kinds.front().theory <= kernel::Duration::zero()) return usual;
+  const double limit = measure::highest_frequency_hz(kinds.front().theory + kinds.front().jitter);
+  std::erase_if(usual, [limit](const measure::SquareWave& one) { return one.frequency.hertz() > limit; });
+  if (usual.empty()) {
+    const std::int64_t millihertz = std::max<std::int64_t>(1, std::llround(kMillihertzOfTheLimit * limit));
+    usual.push_back({.frequency = measure::Frequency::from_millihertz(millihertz)});
+  }
+  return usual;
+}
+
+// So that the slowest signal has some fifty trains.
+kernel::Duration duration_for(const std::vector<measure::SquareWave>& signals, kernel::Duration usual) {
+  constexpr std::int64_t kPeriods = 400;
+  kernel::Duration longest = usual;
+  for (const measure::SquareWave& one : signals) longest = std::max(longest, one.frequency.periods(kPeriods));
+  return std::min<kernel::Duration>(longest, 3'600 * kernel::kSecond);
 }
 
 network::MeasurementSettings measurement_from(const Session& session) {
@@ -103,6 +129,11 @@ measure::Measurement measured_by(Session& session, std::stop_token stop) {
   const ProtocolEntry& row = network_entry_of(session, "measure");
   const std::unique_ptr<conformance::PlannedNetwork> planned = plan_network(session, row);
   network::MeasurementSettings settings = measurement_from(session);
+  if (session.settings.origin("signal") == Origin::fallback) {
+    settings.signals = signals_for(*planned->make(settings.seed), std::move(settings.signals));
+    if (session.settings.origin("duration") == Origin::fallback)
+      settings.duration = duration_for(settings.signals, settings.duration);
+  }
   std::optional<BurstsWhileMeasuring> bursts;
   if (session.settings.is_set("bursts")) {
     bursts.emplace(session.settings, *planned, settings.seed).disturb(settings);

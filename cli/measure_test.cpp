@@ -245,6 +245,16 @@ TEST_F(MeasureVerb, ThePaperIsReproducedSideBySide) {
   }
 }
 
+// Pulses that fall between two samples measure nothing: of the usual signals those that the network carries.
+TEST_F(MeasureVerb, TakesASignalThatTheNetworkCanCarry) {
+  const Called slow = call({"measure", "fieldbus_dll", "--duration", "20s"});
+  EXPECT_HOLDS(slow.out, "\n0.433 Hz from node");
+  EXPECT_EQ(slow.out.find("50 Hz from"), std::string::npos);
+  EXPECT_HOLDS(call({"measure", "valve_bus", "--duration", "1s"}).out, "\n14.906 Hz from");
+  EXPECT_HOLDS(call({"measure", "interbus", "--duration", "1s"}).out, "\n200 Hz from");
+  EXPECT_HOLDS(call({"measure", "valve_bus", "--signal", "50Hz", "--duration", "1s"}).out, "\n50 Hz from");
+}
+
 TEST_F(MeasureVerb, BothDocumentsAreValidForASchemaValidator) {
   ASSERT_EQ(call({"measure", "interbus", "--duration", "5s", "--json", "m.json"}).exit_code, 0);
   ASSERT_EQ(call({"paper", "--duration", "1s", "--json", "paper.json"}).exit_code, 1);

@@ -52,7 +52,7 @@ constexpr std::array kOptions = {
     Option{"reset", value, "COMMAND", "", "run", "a command of the shell that resets the implementation before each case, whose id is $1; cases then run one by one", false, true},
     Option{"fail-fast", flag, "", "", "run", "stop after the first case that fails"},
     Option{"max-time", value, "T", "", "run matrix emc measure check shrink fuzz campaign", "stop after this time: 90s, 15min, 2h"},
-    Option{"signal", list, "F,F...", "50Hz,150Hz,200Hz", "measure", "frequencies of the square waves", false, true},
+    Option{"signal", list, "F,F...", "50Hz,150Hz,200Hz", "measure", "frequencies of the square waves; where none is said those of these that the network can carry, or one that it can", false, true},
     Option{"duration", value, "T", "60s", "measure paper emc", "virtual time of each signal or test", false, true},
     Option{"test-levels", list, "L,L...", "1..4", "emc", "test levels of signal ports: 1, 1..4, or volts x:1000, x:1000..4500:500", false, true},
     Option{"search", flag, "", "", "emc", "find from which voltage on each criterion is seen, also where --test-levels is given", false, true},

@@ -39,6 +39,11 @@ std::size_t tests_that(const Document& tests, IsSo&& is_so) {
   return static_cast<std::size_t>(std::ranges::count_if(tests, std::forward<IsSo>(is_so)));
 }
 
+// One that crashed or hung has accepted nothing wrong: its D is another one.
+bool has_gone(const Document& test) {
+  return test.at("came_up") == true && !test.value("complaint", std::string()).empty();
+}
+
 // The tests under bursts: a bus that stopped is said before anything else.
 void judge_bursts(const Document& tests, char worst_allowed, Said& said) {
   const auto has_criterion = [&](char criterion) {
@@ -59,18 +64,18 @@ void judge_bursts(const Document& tests, char worst_allowed, Said& said) {
   // A stop is a C at least.
   add(tests_that(tests, [](const Document& test) { return test.at("bus_stops") > 0; }), beyond('C'),
       "the bus stopped");
-  // One that crashed or hung has accepted nothing wrong: its D is another one.
-  const auto has_gone = [](const Document& test) {
-    return test.at("came_up") == true && !test.value("complaint", std::string()).empty();
-  };
-  add(tests_that(tests, has_gone), beyond('D'), "an implementation did not go on");
-  add(has_criterion('D') - tests_that(tests, has_gone), beyond('D'), "criterion D");
+  add(tests_that(tests, has_gone), beyond('D'), "an implementation crashed, hung or broke its contract");
+  add(tests_that(tests,
+                 [](const Document& test) {
+                   return test.at("came_up") == true && test.at("criterion") == "D" && !has_gone(test);
+                 }),
+      beyond('D'), "criterion D");
   add(has_criterion('C'), beyond('C'), "criterion C");
   if (worst_allowed < 'B') add(has_criterion('B'), Verdict::fail, "criterion B");
   add(tests_that(tests, [](const Document& test) { return test.at("came_up") == false; }),
       Verdict::inconclusive, "the network did not come up");
   add(tests_that(tests,
-                 [&has_gone](const Document& test) {
+                 [](const Document& test) {
                    return test.at("came_up") == true && test.at("evidence").at("text") == "" &&
                           !has_gone(test);
                  }),
@@ -88,16 +93,18 @@ void judge_channels(const Document& channels, Said& said) {
     add_words(said.sentence,
               fmt::format("{} on {} of {}", words, count, several(channels.size(), "channel")));
   };
+  add(tests_that(channels, has_gone), Verdict::fail, "an implementation crashed, hung or broke its contract");
   add(tests_that(channels, [](const Document& test) { return test.at("bus_stops") > 0; }), Verdict::fail,
       "the bus stopped");
   add(tests_that(channels,
                  [](const Document& test) {
-                   return test.at("came_up") == false || test.at("ledger").at("sent") < kFewExchanges ||
-                          !has_theory(test);
+                   return !has_gone(test) &&
+                          (test.at("came_up") == false || test.at("ledger").at("sent") < kFewExchanges ||
+                           !has_theory(test));
                  }),
       Verdict::inconclusive, "too little to tell");
   const std::size_t refuted = tests_that(channels, [](const Document& test) {
-    return test.at("came_up") == true &&
+    return test.at("came_up") == true && !has_gone(test) &&
            ((has_theory(test) && test.at("chance_of_count") < kRefuted) || !works_again(test));
   });
   if (refuted == 0) return;

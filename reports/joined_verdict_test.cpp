@@ -123,7 +123,15 @@ TEST(JoinedVerdict, AnImplementationThatEndsATestIsSaidToHave) {
   emc["tests"][0]["complaint"] = "implementation_hangs: it has not answered within 2000 ms";
   emc["tests"][0]["evidence"]["text"] = "";
   EXPECT_EQ(of_document(emc).verdict, Verdict::fail);
-  EXPECT_EQ(of_document(emc).documents[0].sentence, "an implementation did not go on in 1 of 16 burst tests");
+  EXPECT_EQ(of_document(emc).documents[0].sentence,
+            "an implementation crashed, hung or broke its contract in 1 of 16 burst tests");
+  emc = quiet_emc();
+  emc["channels"][0]["complaint"] = "implementation_crashed: it ended";
+  emc["channels"][0]["ledger"]["sent"] = 0;
+  EXPECT_EQ(of_document(emc).verdict, Verdict::fail);
+  EXPECT_EQ(of_document(emc).documents[0].sentence.find(
+                "an implementation crashed, hung or broke its contract on 1 of"),
+            0U);
 }
 
 TEST(JoinedVerdict, AMeasurementThatWasNeverQuietTestsNoTheory) {

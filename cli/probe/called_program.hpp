@@ -8,11 +8,13 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace fieldproof::cli {
@@ -31,7 +33,8 @@ struct Call {
   bool on_terminal = false;  // standard output and error are one terminal; `out` holds both
   int signal = 0;            // sent when the output holds `signal_after`
   std::string signal_after;
-  int signals = 1;  // how often it is sent, at once
+  // Sent once more so much later; zero: not.
+  std::chrono::milliseconds again_after{};
 
   Called run() const;
 
@@ -97,7 +100,11 @@ inline Called Call::run() const {
       if (!read_some(open_ends[i].fd, i == 0 ? called.out : called.err)) open_ends[i].fd = -1;
     }
     if (!is_sent && called.out.find(signal_after) != std::string::npos) {
-      for (int n = 0; n < signals; ++n) kill(child, signal);
+      kill(child, signal);
+      if (again_after.count() > 0) {
+        std::this_thread::sleep_for(again_after);
+        kill(child, signal);
+      }
       is_sent = true;
     }
   }

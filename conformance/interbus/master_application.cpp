@@ -86,7 +86,7 @@ class Writings {
 
 void whole_outputs(MasterBench& bench, CaseJudge& judge) {
   const auto words = static_cast<unsigned>(bench.ring().word_count());
-  const kernel::Duration cycle = bench.status().cycle_time;
+  const kernel::Duration cycle = bench.cycle_time();
   Writings writings(2 * cycle, bench.now());
   bench.ring().on_outputs(
       [&](std::span<const std::uint16_t> outputs, kernel::Time when) { writings.on_latched(outputs, when); });

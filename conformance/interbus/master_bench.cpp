@@ -53,7 +53,7 @@ void MasterBench::power_up(std::vector<VirtualStation> ring) {
     back_->set_connected(false);
     master_->on_cycle_end({});
     ring_->set_script({});
-    run_for(std::max<kernel::Duration>(10 * kernel::kMillisecond, 2 * status().cycle_time));
+    run_for(std::max<kernel::Duration>(10 * kernel::kMillisecond, 2 * cycle_time()));
     master_->end();
   }
   configuration_.rules = rules_;
@@ -130,6 +130,10 @@ kernel::Duration MasterBench::longest_cycle() const {
          std::max<kernel::Duration>(kernel::kMillisecond, cables) + configuration_.cycle_time;
 }
 
+kernel::Duration MasterBench::cycle_time() const {
+  return std::clamp(status().cycle_time, kernel::levels_duration(1, rules_.bit_rate), longest_cycle());
+}
+
 bool MasterBench::wait_for_run() {
   const auto cycles = static_cast<std::int64_t>(8 + 5 * ring_->stations().size());
   bool is_running = false;
@@ -181,10 +185,12 @@ bool MasterBench::run_cycle() {
     segment().step();
   }
   id_cycles_in_a_row_ = finished_.is_data ? 0 : id_cycles_in_a_row_ + 1;
+  if (finished_.is_data) bad_id_cycles_ = 0;
+  if (!finished_.is_data && !finished_.is_accepted) ++bad_id_cycles_;
   if (finished_.is_data) ordered_id_cycles_ = 0;
   // ID cycles that come back bad go on until they stop the bus.
-  return id_cycles_in_a_row_ <=
-         kMostIdCycles + rules_.stop_after_bad_cycles + 8 * ring_->stations().size() + ordered_id_cycles_;
+  const std::size_t owed = std::min<std::size_t>(bad_id_cycles_, rules_.stop_after_bad_cycles);
+  return id_cycles_in_a_row_ <= kMostIdCycles + owed + 8 * ring_->stations().size() + ordered_id_cycles_;
 }
 
 void MasterBench::run_to_cycle(std::uint64_t number) {

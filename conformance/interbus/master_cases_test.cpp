@@ -182,6 +182,30 @@ struct DrivesEarly final : interbus::Master, private segment::Port {
   int waves_ = 0;
 };
 
+// Whatever it reports, nobody else is blamed for it, and nobody waits for it.
+template <std::int64_t Seconds>
+struct ReportsAnyCycleTime final : interbus::Master {
+  using Master::Master;
+  interbus::MasterStatus status() const override {
+    interbus::MasterStatus status = Master::status();
+    status.cycle_time = Seconds * kernel::kSecond;
+    return status;
+  }
+};
+
+TEST(MasterSuite, ACycleTimeThatCannotBeIsAFailureOfTheMaster) {
+  constexpr std::string_view kOrder =
+      "interbus/master/identification/order_within_an_id_cycle_is_met_by_the_next";
+  for (const MasterBench::MakeMaster& make_master :
+       {MasterBench::MakeMaster(make<ReportsAnyCycleTime<0>>()),
+        MasterBench::MakeMaster(make<ReportsAnyCycleTime<3'600>>())}) {
+    EXPECT_NE(run_master_case(kOrder, make_master).verdict, judge::Verdict::error);
+    const judge::CaseResult compared =
+        run_master_case("interbus/master/compared/each_value_of_each_word", make_master);
+    EXPECT_EQ(compared.reason, "cycle_time_wrong") << told(compared);
+  }
+}
+
 TEST(MasterSuite, AMasterThatDrivesInThePastFailsItsCase) {
   const judge::CaseResult result = run_master_case(kStop, make<DrivesEarly>());
   EXPECT_EQ(result.verdict, judge::Verdict::fail);

@@ -1,6 +1,7 @@
 // ID cycles of a recognition, with messages and with errors, and orders for them (IM-19, IM-31).
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "conformance/interbus/master_scene.hpp"
@@ -117,9 +118,9 @@ MasterCase messages_case(const judge::Reference& from_page) {
 // A cycle begins a cycle time after the one before; an ID cycle of four stations lasts longer than 400 us.
 void order_within_an_id_cycle(RingScene& scene) {
   MasterBench& bench = scene.bench;
-  const kernel::Time begins = bench.ring().last_cycle().start + bench.status().cycle_time;
+  const kernel::Time begins = bench.ring().last_cycle().start + bench.cycle_time();
   bench.request_id_cycle();
-  bench.run_for(begins + 200 * kernel::kMicrosecond - bench.now());
+  bench.run_for(std::max<kernel::Duration>(begins + 200 * kernel::kMicrosecond - bench.now(), {}));
   bench.request_id_cycle();
 }
 

@@ -379,7 +379,7 @@ bool MasterSide::run_cycle() {
 
 // How many cycle times lie between the starts of two cycles; -1: not a whole number of them.
 std::int64_t MasterSide::cycle_times() {
-  const kernel::Duration cycle_time = bench_.status().cycle_time;
+  const kernel::Duration cycle_time = bench_.cycle_time();
   const kernel::Time start = bench_.ring().last_cycle().start;
   const kernel::Duration span = start - std::exchange(cycle_start_, start);
   if (!std::exchange(is_next_, true)) return 0;

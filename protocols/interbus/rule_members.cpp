@@ -194,7 +194,8 @@ constexpr std::array kFrameCheckWords{
     SettingWords{"check_preset", "0 to 65535", "of its register"},
     SettingWords{"check_final_xor", "0 to 65535", "of the register at the end"},
     SettingWords{"check_is_reflected", "0 or 1",
-                 "1: octets go in, and the check comes out, least significant bit first, low octet first"}};
+                 "1: octets go in, and the check comes out, least significant bit first, low octet first; "
+                 "polynomial and preset are not turned, the XOR comes last"}};
 
 // ---- length codes ----
 

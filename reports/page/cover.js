@@ -34,11 +34,20 @@ function testedPart({ runs, documents }) {
   ]);
 }
 
+// Who receives the page must not take a model for a laboratory.
+function methodText(documents) {
+  const has = (schema) => documents.some(({ content }) => content.schema === schema);
+  if (!has("fieldproof/emc/1") && !has("fieldproof/measurement/1")) return "";
+  return `simulation: the implementation in a simulated network, in virtual time${has("fieldproof/emc/1")
+    ? "; bursts are an uncalibrated model of IEC 61000-4-4, no laboratory test" : ""}`;
+}
+
 function benchPart({ runs, documents }) {
   const identities = runs.map(({ results }) => results.run);
   const made = documents.map(({ content }) => content.made).filter(Boolean);
   return definitions([
     ["fieldproof", distinct([...identities, ...made].map((one) => one.tool_version)).join(", ")],
+    ["Method", methodText(documents)],
     ["Date", dates({ runs, documents })],
     ["Host", distinct([...runs.map(({ manifest }) => manifest), ...made].map((one) => one.host)).join(", ")],
     ["Seeds", distinct([...identities, ...documents.map(({ content }) => content)].map((one) => one.seed)).join(", ")],
@@ -140,7 +149,8 @@ function rowsOfBursts({ name, content }) {
     const references = judged.filter(({reference}) => reference?.came_up).map(({reference}) => reference.criterion).sort().at(-1);
     const beside = references && (references === worst ? "references alone the same" : `references alone ${references}`);
     const gone = tests.filter((test) => test.came_up && test.complaint);
-    const said = [worst && `criterion ${worst}`, beside, gone.length > 0 && `the implementation did not go on in ${part(gone.length, tests.length)} tests: ${gone[0].complaint}`, stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
+    const wrong = tests.find((test) => test.first_wrong);
+    const said = [worst && `criterion ${worst}`, beside, wrong && `a wrong word ${wrong.first_wrong}`, gone.length > 0 && `the implementation did not go on in ${part(gone.length, tests.length)} tests: ${gone[0].complaint}`, stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
       judged.length < tests.length && `the network did not come up in ${part(tests.length - judged.length, tests.length)} tests`];
     return {test: `${name}: bursts, level ${level}`, result: said.filter(Boolean).join(", "),
       limit: kLimits[content.worst_allowed ?? "B"], margin: ""};
