@@ -186,7 +186,7 @@ TEST_F(StoredEmc, OfAnImplementationThatGoesIsShrunkForThatReasonOnly) {
   const std::string station =
       std::string(FIELDPROOF_EXE) + " station valve_bus/node mutant:write_not_checked\n";
   write("node.sh", "exec " + station);
-  std::vector<std::string> test = bursts("20s", "-");
+  std::vector<std::string> test = bursts("2s", "-");
   test.insert(test.end(), {"--worst", "A"});
   ASSERT_EQ(emc("valve_bus", "node@3=exec:sh node.sh", test).exit_code, kFailed);
   write("node.sh", "dd bs=1 count=20000 status=none | " + station);
