@@ -142,7 +142,7 @@ emc::ImmunityResult end_by(const iut::Misbehaviour& misbehaviour) {
   result.came_up = true;
   result.criterion = emc::Criterion::d;
   result.reason = misbehaviour.reason();
-  result.decided_by = "an implementation did not go on";
+  result.decided_by = "an implementation crashed, hung or broke its contract";
   result.complaint = fmt::format("{}: {}", misbehaviour.reason(), misbehaviour.what());
   return result;
 }

@@ -48,6 +48,19 @@ TEST_F(Networks, OfEveryProtocolExchangeDataUnderBursts) {
   }
 }
 
+// A CD before it is activated has no answer: what it sends later answers something else.
+TEST_F(Networks, CountNoTurnaroundOfWhatIsNotAnswered) {
+  const std::string device =
+      "ff_device@1=exec:" + std::string(FIELDPROOF_EXE) + " station fieldbus_dll/ff_device";
+  ASSERT_EQ(emc({"fieldbus_dll", "--iut", device, "--duration", "1s"}).exit_code, 0);
+  const nlohmann::json cycles = only_test().at("cycles");
+  const auto turnaround = std::ranges::find(cycles, "turnaround time of ff_device@1",
+                                            [](const auto& one) { return one.at("cycle"); });
+  ASSERT_NE(turnaround, cycles.end());
+  EXPECT_GT(turnaround->at("quiet").at("count"), 0);
+  EXPECT_LE(turnaround->at("quiet").at("max_us"), turnaround->at("theory_us"));
+}
+
 // Of each protocol, with a reference and with one that accepts or loses what it should not.
 TEST_F(Networks, BalanceTheirExchanges) {
   std::uint64_t wrong = 0;

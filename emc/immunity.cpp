@@ -375,7 +375,8 @@ std::string_view text_of(Criterion criterion) {
     case Criterion::c:
       return "the bus stopped, or did not recover by itself in time; it worked after a start";
     case Criterion::d:
-      return "wrong data were accepted, it did not work after a start, or an implementation did not go on";
+      return "wrong data were accepted, it did not work after a start, or "
+             "an implementation crashed, hung or broke its contract";
   }
   return "";
 }

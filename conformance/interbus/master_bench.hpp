@@ -91,8 +91,8 @@ class MasterBench final : public CaseBench {
   // else.
   bool run_cycle();
   kernel::Duration longest_cycle() const;
-  // The one that the master reports, where it can be one; a bit to the longest otherwise: nobody waits for a
-  // number that an implementation has made up.
+  // The one that the master reports, at least a bit and at most the longest that there can be: nobody waits
+  // for a number that an implementation has made up.
   kernel::Duration cycle_time() const;
   // Until the ring has seen so many cycles, counted from 0, and the next one begins.
   void run_to_cycle(std::uint64_t number);

@@ -150,7 +150,9 @@ function rowsOfBursts({ name, content }) {
     const beside = references && (references === worst ? "references alone the same" : `references alone ${references}`);
     const gone = tests.filter((test) => test.came_up && test.complaint);
     const wrong = tests.find((test) => test.first_wrong);
-    const said = [worst && `criterion ${worst}`, beside, wrong && `a wrong word ${wrong.first_wrong}`, gone.length > 0 && `the implementation did not go on in ${part(gone.length, tests.length)} tests: ${gone[0].complaint}`, stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
+    const said = [worst && `criterion ${worst}`, beside, wrong && `a wrong word ${wrong.first_wrong}`,
+      gone.length > 0 && `${gone[0].decided_by} in ${part(gone.length, tests.length)} tests: ${gone[0].complaint}`,
+      stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
       judged.length < tests.length && `the network did not come up in ${part(tests.length - judged.length, tests.length)} tests`];
     return {test: `${name}: bursts, level ${level}`, result: said.filter(Boolean).join(", "),
       limit: kLimits[content.worst_allowed ?? "B"], margin: ""};
