@@ -19,6 +19,10 @@ using nlohmann::ordered_json;
 
 constexpr std::array kCriteria = {emc::Criterion::a, emc::Criterion::b, emc::Criterion::c, emc::Criterion::d};
 
+double seconds(kernel::Duration time) {
+  return static_cast<double>(time.count()) / 1e12;
+}
+
 std::string recovery_text(const emc::ImmunityResult& result) {
   if (result.recovered_by_itself) return fmt::format("{}", result.recovery_exchanges);
   return result.recovered_after_start ? "after a start" : "never";
@@ -54,7 +58,7 @@ ordered_json search_json(const EmcSearch& search) {
     probes.push_back({{"volts", volts}, {"criterion", emc::name(criterion)}});
   ordered_json json = thresholds_json(search.thresholds);
   json["tests"] = search.tests();
-  json["test_s"] = static_cast<double>(search.duration.count()) / 1e12;
+  json["test_s"] = seconds(search.duration);
   json["probes"] = std::move(probes);
   if (search.references) json["references"] = thresholds_json(*search.references);
   return json;
@@ -75,7 +79,7 @@ ordered_json sensitivity_json(const EmcSensitivity& found) {
           {"level", found.level.text()},
           {"criterion", emc::name(found.criterion)},
           {"tests", found.tests},
-          {"test_s", static_cast<double>(found.duration.count()) / 1e12},
+          {"test_s", seconds(found.duration)},
           {"parameters", std::move(parameters)}};
 }
 
@@ -151,7 +155,6 @@ double cycle_time_us(const emc::ImmunityResult& result) {
 
 // Windows in which nothing was wrong are left out.
 ordered_json immunity_course_json(const emc::ImmunityCourse& course) {
-  const auto seconds = [](kernel::Duration time) { return static_cast<double>(time.count()) / 1e12; };
   const kernel::Duration width = course.length() / emc::ImmunityCourse::kWindows;
   ordered_json windows = ordered_json::array();
   for (std::size_t n = 0; n < course.windows().size(); ++n) {
@@ -183,6 +186,7 @@ ordered_json result_json(const emc::ImmunityResult& result) {
           {"recovered_by_itself", result.recovered_by_itself},
           {"recovered_after_start", result.recovered_after_start},
           {"recovery_cycles", result.recovery_exchanges},
+          {"recovery_s", seconds(result.recovery_time)},
           {"bus_stops", result.stops},
           {"quality_bit", result.poor_quality},
           {"cycle_time_us", cycle_time_us(result)},
@@ -199,7 +203,7 @@ ordered_json test_json(const EmcTest& test) {
                        {"open_circuit_volts", test.level.open_circuit_volts()},
                        {"repetition", emc::text_of(test.repetition)},
                        {"polarity", emc::text_of(test.polarity)}};
-  if (test.of_search) json["of_search_s"] = static_cast<double>(test.of_search->duration.count()) / 1e12;
+  if (test.of_search) json["of_search_s"] = seconds(test.of_search->duration);
   json.update(result_json(test.result));
   if (test.reference) json["reference"] = reference_json(*test.reference);
   return json;
@@ -452,13 +456,21 @@ std::string emc_hint(const EmcCampaign& campaign) {
   return fmt::format("hint: all levels lie on one side, {}; {}\n", side, where);
 }
 
+std::string longest_recovery_text(const EmcCampaign& campaign) {
+  kernel::Duration longest{};
+  for (const EmcTest& test : campaign.tests)
+    if (test.result.recovered_by_itself) longest = std::max(longest, test.result.recovery_time);
+  return longest > kernel::Duration{} ? fmt::format("; the longest took {}", kernel::describe(longest)) : "";
+}
+
 std::string emc_summary(const EmcCampaign& campaign) {
   if (campaign.tests.empty()) return "no test came to its end: nothing is shown\n";
   const EmcTotal total = total_of(campaign);
   std::string text;
   if (campaign.has_bursts) {
-    text = fmt::format("\nan exchange is one {}; recovery is counted in them, and may take {} ({})\n",
-                       campaign.exchange, campaign.recovery.exchanges, campaign.recovery.source);
+    text = fmt::format("\nan exchange is one {}; recovery is counted in them, and may take {} ({}){}\n",
+                       campaign.exchange, campaign.recovery.exchanges, campaign.recovery.source,
+                       longest_recovery_text(campaign));
     text += "criterion  what it means (a choice of this project)\n";
     for (const auto criterion : kCriteria) {
       text += fmt::format("{:>9}  {}\n", emc::name(criterion), emc::text_of(criterion));
@@ -518,7 +530,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                            {"worst_allowed", emc::name(campaign.worst)},
                            {"seed", std::to_string(campaign.seed)},
                            {"is_complete", campaign.is_complete},
-                           {"duration_s", static_cast<double>(campaign.duration.count()) / 1e12},
+                           {"duration_s", seconds(campaign.duration)},
                            {"tests", std::move(tests)},
                            {"channels", std::move(channels)},
                            {"places", places_json(campaign)},

@@ -49,15 +49,16 @@ TEST_F(Interrupted, ByTheSameRequestTwiceWritesThePartialResult) {
   EXPECT_HOLDS(read("stopped/results.json"), "interrupted by SIGTERM");
 }
 
-// Nobody waits for an implementation that hangs: here it gets no call after the first ones.
+// Nobody waits for an implementation that hangs: here it gets no call after the first ones, and has answered
+// those when it is said to hang.
 TEST_F(InterruptedProgram, ByASecondRequestASecondLaterEndsAtOnce) {
-  write("node.sh", "(dd bs=1 count=400 status=none; sleep 20) | " + std::string(FIELDPROOF_EXE) +
+  write("node.sh", "(dd bs=1 count=400 status=none; sleep 1; touch hangs; sleep 20) | " + std::string(FIELDPROOF_EXE) +
                        " station valve_bus/node\n");
   Call interrupted = prepared({"run", "valve_bus/node/**", "--out", "stopped", "--jobs", "1", "--iut",
                                "exec:sh node.sh", "--call-limit", "1min"});
   interrupted.signal = SIGTERM;
   interrupted.again_after = std::chrono::milliseconds(1'300);
-  interrupted.signal_after = "fieldproof ";
+  interrupted.signal_file = "hangs";
   EXPECT_EQ(interrupted.run().exit_code, 143);
   EXPECT_EQ(read("stopped/results.json").find("interrupted by SIGTERM"), std::string::npos);
 }

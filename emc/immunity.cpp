@@ -179,6 +179,7 @@ class Run final : private network::ExchangeWatcher {
     const std::uint64_t most = most_exchanges_waited();
     result_.recovered_by_itself = delivers_all(most);
     result_.recovery_exchanges = recovery_exchanges_;
+    result_.recovery_time = recovery_time_;
     if (result_.recovered_by_itself || !result_.is_complete) return;
     network_.stop();
     segment_.run_for(acceptance_.pause_before_start);
@@ -200,12 +201,14 @@ class Run final : private network::ExchangeWatcher {
     is_recovering_ = true;
     recovery_exchanges_ = 0;
     statistics_.begin_recovery();
-    const Time end = segment_.now() + std::max(acceptance_.least_time_waited,
+    const Time begin = segment_.now();
+    const Time end = begin + std::max(acceptance_.least_time_waited,
                                                acceptance_.limits_waited * network_.recovery_limit().time);
     while (segment_.now() < end && !statistics_.is_recovered() && recovery_exchanges_ < most &&
            !is_stopped()) {
       if (network_.state() == State::stopped || !segment_.step()) break;
     }
+    recovery_time_ = segment_.now() - begin;
     return statistics_.is_recovered() && is_exchanging_;
   }
 
@@ -349,6 +352,7 @@ class Run final : private network::ExchangeWatcher {
   bool is_exchanging_ = false;  // a served exchange of data since the last start, seen on the line as well
   bool is_recovering_ = false;
   std::uint64_t recovery_exchanges_ = 0;
+  Duration recovery_time_{};
   Time first_stop_{};
   std::optional<Time> first_trouble_;  // an exchange that was not served, or not at the first attempt
   std::string why_stopped_;            // the first time, where the network can say so

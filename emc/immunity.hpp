@@ -73,6 +73,7 @@ struct ImmunityResult {
   std::uint64_t longest_bad_run = 0;  // exchanges of either kind that were not served
   // After the last pulse until every signal has been delivered once, that exchange included.
   std::uint64_t recovery_exchanges = 0;
+  kernel::Duration recovery_time{};  // as long as these took, the silence before them included
   bool recovered_by_itself = false;
   bool recovered_after_start = false;  // where it did not by itself
   std::uint64_t stops = 0;             // each was followed by a new start

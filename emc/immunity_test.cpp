@@ -50,6 +50,11 @@ TEST(Immunity, AShieldBondedAllAroundLetsNothingThroughFrom1000To4500V) {
       EXPECT_EQ(result.criterion, Criterion::a) << volts;
       EXPECT_EQ(result.counts.corrupted, 0U) << volts;
       EXPECT_GT(result.counts.sent, 3000U);
+      // On a line without an error the recovery is as many cycles as it says, the first of them begun before.
+      const auto cycle = static_cast<double>(result.cycles.front().kind.theory.count());
+      const double recovery = static_cast<double>(result.recovery_time.count()) / cycle;
+      EXPECT_GT(recovery, static_cast<double>(result.recovery_exchanges) - 1.01);
+      EXPECT_LT(recovery, static_cast<double>(result.recovery_exchanges) + 0.01);
     }
   }
 }

@@ -175,6 +175,7 @@ inline nlohmann::ordered_json sample_emc() {
          {"recovered_by_itself", n < 10},
          {"recovered_after_start", n < 14},
          {"recovery_cycles", 1},
+         {"recovery_s", 0.00312},
          {"bus_stops", n / 8},
          {"quality_bit", false},
          {"cycle_time_us", 814.0},

@@ -31,8 +31,9 @@ struct Call {
   std::filesystem::path folder;
   std::map<std::string, std::string> environment;
   bool on_terminal = false;  // standard output and error are one terminal; `out` holds both
-  int signal = 0;            // sent when the output holds `signal_after`
+  int signal = 0;            // sent when the output holds `signal_after` and `signal_file` is in the folder
   std::string signal_after;
+  std::string signal_file;  // empty: none is waited for
   // Sent once more so much later; zero: not.
   std::chrono::milliseconds again_after{};
 
@@ -40,6 +41,10 @@ struct Call {
 
  private:
   [[noreturn]] void become_program(int out, int err) const;
+  bool is_signal_due(const std::string& out) const {
+    return out.find(signal_after) != std::string::npos &&
+           (signal_file.empty() || std::filesystem::exists(folder / signal_file));
+  }
 };
 
 inline std::array<int, 2> make_pipe() {
@@ -94,12 +99,12 @@ inline Called Call::run() const {
   std::array<pollfd, 2> open_ends{pollfd{out[0], POLLIN, 0}, pollfd{err[0], POLLIN, 0}};
   bool is_sent = signal == 0;
   while (open_ends[0].fd >= 0 || open_ends[1].fd >= 0) {
-    poll(open_ends.data(), open_ends.size(), -1);
+    poll(open_ends.data(), open_ends.size(), is_sent ? -1 : 10);
     for (std::size_t i = 0; i < open_ends.size(); ++i) {
       if (open_ends[i].fd < 0 || open_ends[i].revents == 0) continue;
       if (!read_some(open_ends[i].fd, i == 0 ? called.out : called.err)) open_ends[i].fd = -1;
     }
-    if (!is_sent && called.out.find(signal_after) != std::string::npos) {
+    if (!is_sent && is_signal_due(called.out)) {
       kill(child, signal);
       if (again_after.count() > 0) {
         std::this_thread::sleep_for(again_after);

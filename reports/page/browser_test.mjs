@@ -225,6 +225,10 @@ await look("the cover tells what was tested and what came out", async (page) => 
   for (const one of Object.values(data.cover)) expect(text.includes(shown(one)), `"${one}" is not shown`);
   for (const run of data.runs) expect(text.includes(run.results.run.seed) && text.includes(run.manifest.host), "seed and host");
   expect(await page.locator("#cover table tbody tr").count() >= data.runs.length, "no results");
+  for (const { content } of data.documents.filter((one) => one.content.schema === "fieldproof/emc/1" && one.content.tests.length > 0)) {
+    for (const { meaning } of content.criteria) expect(text.includes(meaning), `"${meaning}" is not said`);
+    if (content.tests.some((test) => test.recovered_by_itself && test.recovery_s)) expect(/recovery, from the last pulse.*, [\d.]+ m?s at most/s.test(text), "recovery has no time");
+  }
 });
 
 await check("text, verdicts and standing filter", async (page) => {
@@ -456,6 +460,8 @@ for (const [name, options] of [["a phone", {viewport: {width: 360, height: 740},
   await check(`nothing is wider than ${name}`, async (page) => {
     if (withTimeLine) await openFirst(page);
     expect((await overflow(page)) <= 0, `${await overflow(page)} px`);
+    const cut = await page.evaluate(() => [...document.querySelectorAll("#cover .scroll")].filter((one) => one.scrollWidth > one.clientWidth).length);
+    expectEqual(cut, 0, "tables of the cover that are cut");
   }, options);
 }
 

@@ -1,8 +1,8 @@
 // The cover of a page that is handed over: what was tested, with what, and what came out, with limits and
 // margins. It is there when the report was asked for one.
 import { definitions, element, section } from "./dom.js";
-import { fixed, number, part, plural, scientific } from "./format.js";
-import { exposedText } from "./immunity.js";
+import { duration, fixed, number, part, plural, scientific } from "./format.js";
+import { criteriaPart, exposedText } from "./immunity.js";
 import { mutantsCaught } from "./matrix.js";
 import { caveatList, documentsOf, headlineOf, implementationText, partsOf, sentence } from "./summary.js";
 import { table } from "./table.js";
@@ -99,7 +99,7 @@ function skewRow(name, comparisons, tolerance) {
   const largest = comparisons.filter((one) => one.quantity.startsWith("largest delay"));
   if (least.length === 0 || largest.length === 0) return [];
   const range = (key) => `${number(Math.min(...least.map((one) => one[key])))} to ${number(Math.max(...largest.map((one) => one[key])))} ${least[0].unit}`;
-  return [{test: `${name}: skew, from the edge of an input to that of its output`, result: `${range("measured")} (${agreementsText([...least, ...largest])})`,
+  return [{test: `${name}: delay from the edge of an input to that of its output (input/output skew)`, result: `${range("measured")} (${agreementsText([...least, ...largest])})`,
     limit: `${range("theory")} \u00b1 ${number(tolerance)} % ${least[0].whole}`, margin: ""}];
 }
 
@@ -159,11 +159,13 @@ function rowsOfBursts({ name, content }) {
   });
   if (content.thresholds) rows.push({test: `${name}: from which voltage on each criterion was seen, by a search`,
     result: content.thresholds.text, limit: "none", margin: ""});
-  const recovered = content.tests.filter((test) => test.came_up && test.recovered_by_itself).map((test) => test.recovery_cycles);
+  const recovered = content.tests.filter((test) => test.came_up && test.recovered_by_itself);
   if (recovered.length > 0 && content.recovery_limit) {
     const { exchanges, exchange } = content.recovery_limit;
-    const most = Math.max(...recovered);
-    rows.push({test: `${name}: recovery after the last pulse, the longest`, result: `${number(most)} \u00d7 ${exchange}`,
+    const most = Math.max(...recovered.map((test) => test.recovery_cycles));
+    const seconds = Math.max(...recovered.map((test) => test.recovery_s ?? NaN));
+    const took = Number.isNaN(seconds) ? "" : `, ${duration(1e6 * seconds)} at most`;
+    rows.push({test: `${name}: recovery, from the last pulse until each word has arrived again, the longest`, result: `${number(most)} \u00d7 ${exchange}${took}`,
       limit: `${number(exchanges)} \u00d7 ${exchange}`, margin: `${number(exchanges - most)} \u00d7 ${exchange}`});
   }
   return rows;
@@ -198,6 +200,14 @@ function resultRows(data) {
     ...of("fieldproof/publication/2", (document) => [{test: document.name, result: sentence(said.get(document).sentence), limit: "no row DIFFERS", margin: ""}])];
 }
 
+// What the letters of the table stand for, each list of meanings once.
+function criteriaOf(data) {
+  const lists = new Map(documentsOf(data, "fieldproof/emc/1").filter(({ content }) => content.tests.length > 0)
+      .map(({ content }) => [JSON.stringify(content.criteria), content]));
+  if (lists.size === 0) return null;
+  return [element("h3", {}, "What the criteria mean"), [...lists.values()].map(criteriaPart)];
+}
+
 export function coverSection(data) {
   const { cover } = data;
   if (!cover) return null;
@@ -209,6 +219,7 @@ export function coverSection(data) {
         {title: "result", cell: (row) => row.result},
         {title: "limit", cell: (row) => row.limit},
         {title: "margin", kind: "number", cell: (row) => row.margin},
-      ], resultRows(data)),
+      ], resultRows(data), "stacked"),
+      criteriaOf(data),
       caveatList(data, partsOf(data).length));
 }

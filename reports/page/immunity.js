@@ -24,7 +24,7 @@ function heatOf(tests) {
   })));
 }
 
-function criteriaPart(content) {
+export function criteriaPart(content) {
   if (!content.criteria) return null;
   return element("ul", {class: "criteria"}, content.criteria.map((one) =>
     element("li", {}, element("span", {class: `heat criterion-${one.criterion}`}, one.criterion), " ", one.meaning)));
