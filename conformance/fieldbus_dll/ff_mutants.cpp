@@ -1,8 +1,12 @@
 #include "conformance/fieldbus_dll/ff_mutants.hpp"
 
+#include "conformance/fieldbus_dll/ff_device_frame_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_device_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/ff_device_token_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_ending_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/ff_las_live_list_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/ff_las_standby_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_las_sequence_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_request_seeded_faults.hpp"
 #include "conformance/fieldbus_dll/ff_sequence_seeded_faults.hpp"

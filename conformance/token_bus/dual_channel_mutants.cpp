@@ -2,7 +2,10 @@
 
 #include <limits>
 
+#include "conformance/token_bus/dual_channel_limit_seeded_faults.hpp"
 #include "conformance/token_bus/dual_channel_seeded_faults.hpp"
+#include "conformance/token_bus/dual_channel_selection_seeded_faults.hpp"
+#include "conformance/token_bus/dual_channel_symbol_seeded_faults.hpp"
 
 namespace fieldproof::conformance {
 namespace {

@@ -1,5 +1,6 @@
 #include "conformance/token_bus/station_each_seeded_faults.hpp"
 #include "conformance/token_bus/station_mutants.hpp"
+#include "conformance/token_bus/station_reception_seeded_faults.hpp"
 
 // Stations that are right except in one octet, for one action, or at one place.
 namespace fieldproof::conformance {

@@ -1,6 +1,8 @@
 #include "conformance/token_bus/station_mutants.hpp"
 
 #include "conformance/token_bus/station_check_seeded_faults.hpp"
+#include "conformance/token_bus/station_holding_seeded_faults.hpp"
+#include "conformance/token_bus/station_reception_seeded_faults.hpp"
 #include "conformance/token_bus/station_seeded_faults.hpp"
 
 namespace fieldproof::conformance {

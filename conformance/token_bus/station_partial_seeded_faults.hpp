@@ -1,6 +1,7 @@
 #pragma once
 
 #include "conformance/token_bus/station_line_seeded_faults.hpp"
+#include "conformance/token_bus/station_reception_seeded_faults.hpp"
 #include "conformance/token_bus/station_vocabulary_seeded_faults.hpp"
 
 // Stations of the token bus that are right mostly: until something was counted, while a class has time, while

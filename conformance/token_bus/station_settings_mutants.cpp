@@ -3,6 +3,7 @@
 #include "conformance/token_bus/station_host_seeded_faults.hpp"
 #include "conformance/token_bus/station_line_seeded_faults.hpp"
 #include "conformance/token_bus/station_mutants.hpp"
+#include "conformance/token_bus/station_reception_seeded_faults.hpp"
 
 // Stations whose numbers are not those of their settings, that know short addresses only, or that receive or
 // report wrongly over a longer time.

@@ -1,5 +1,6 @@
 #include "conformance/token_bus/station_mutants.hpp"
 #include "conformance/token_bus/station_partial_seeded_faults.hpp"
+#include "conformance/token_bus/station_reception_seeded_faults.hpp"
 
 // Stations that are wrong for some words of a vocabulary only.
 namespace fieldproof::conformance {
