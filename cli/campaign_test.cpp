@@ -334,7 +334,8 @@ class CampaignOverRanks : public CampaignVerb {
     if (!std::filesystem::exists(module) || !std::filesystem::exists("/usr/bin/mpirun"))
       GTEST_SKIP() << "not installed: libopenmpi-dev openmpi-bin";
   }
-  // mpirun itself may wait for ever, for ranks that are all gone, when one of them is killed while MPI comes up.
+  // mpirun itself may wait for ever, for ranks that are all gone, when one of them is killed while MPI comes
+  // up.
   Called mpirun(const std::string& words) const {
     return in_shell(
         "export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1; ulimit -c 0; "

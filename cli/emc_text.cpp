@@ -75,12 +75,9 @@ ordered_json sensitivity_json(const EmcSensitivity& found) {
       one["above"] = {{"value", range.above->first}, {"criterion", emc::name(range.above->second)}};
     parameters.push_back(std::move(one));
   }
-  return {{"is_complete", found.is_complete},
-          {"level", found.level.text()},
-          {"criterion", emc::name(found.criterion)},
-          {"tests", found.tests},
-          {"test_s", seconds(found.duration)},
-          {"parameters", std::move(parameters)}};
+  return {{"is_complete", found.is_complete},        {"level", found.level.text()},
+          {"criterion", emc::name(found.criterion)}, {"tests", found.tests},
+          {"test_s", seconds(found.duration)},       {"parameters", std::move(parameters)}};
 }
 
 ordered_json evidence_json(const emc::Evidence& evidence) {

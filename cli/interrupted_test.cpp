@@ -52,8 +52,8 @@ TEST_F(Interrupted, ByTheSameRequestTwiceWritesThePartialResult) {
 // Nobody waits for an implementation that hangs: here it gets no call after the first ones, and has answered
 // those when it is said to hang.
 TEST_F(InterruptedProgram, ByASecondRequestASecondLaterEndsAtOnce) {
-  write("node.sh", "(dd bs=1 count=400 status=none; sleep 1; touch hangs; sleep 20) | " + std::string(FIELDPROOF_EXE) +
-                       " station valve_bus/node\n");
+  write("node.sh", "(dd bs=1 count=400 status=none; sleep 1; touch hangs; sleep 20) | " +
+                       std::string(FIELDPROOF_EXE) + " station valve_bus/node\n");
   Call interrupted = prepared({"run", "valve_bus/node/**", "--out", "stopped", "--jobs", "1", "--iut",
                                "exec:sh node.sh", "--call-limit", "1min"});
   interrupted.signal = SIGTERM;

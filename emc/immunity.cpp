@@ -203,7 +203,7 @@ class Run final : private network::ExchangeWatcher {
     statistics_.begin_recovery();
     const Time begin = segment_.now();
     const Time end = begin + std::max(acceptance_.least_time_waited,
-                                               acceptance_.limits_waited * network_.recovery_limit().time);
+                                      acceptance_.limits_waited * network_.recovery_limit().time);
     while (segment_.now() < end && !statistics_.is_recovered() && recovery_exchanges_ < most &&
            !is_stopped()) {
       if (network_.state() == State::stopped || !segment_.step()) break;
