@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "conformance/commands_text.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/sequence_shrink.hpp"
 #include "harness/kernel/sanitized.hpp"
@@ -18,7 +19,6 @@ using judge::Verdict;
 constexpr std::string_view kFolder = "/derived/";
 constexpr std::string_view kFolderOfCheck = "/check/";
 constexpr std::string_view kOfImplementation = "implementation_";  // reasons begin so: it crashed, it hangs
-constexpr std::size_t kMostSaid = 10;                              // commands of a sequence, in a finding
 constexpr std::size_t kFewerIfSanitized = 16;
 constexpr std::size_t kFewestSequences = 3;
 constexpr std::uint64_t kFingerprintFactor = 0x100'0000'01B3;  // of FNV-1a
@@ -39,28 +39,10 @@ TestCase derived_case(const SequenceRole& role, const DerivedRow& row) {
   return one;
 }
 
-// What comes several times in a row is said once; of a long sequence its end, which is what failed.
 std::string commands_text(const Sequence& sequence, const SequenceVocabulary& vocabulary) {
-  std::vector<std::string> said;
-  std::size_t times = 1;
-  std::string last;
-  const auto say = [&] {
-    if (!last.empty()) said.push_back(times == 1 ? last : fmt::format("{} times {}", times, last));
-  };
-  for (std::string& line : sequence_lines(sequence, vocabulary)) {
-    if (line == last) {
-      ++times;
-      continue;
-    }
-    say();
-    last = std::move(line);
-    times = 1;
-  }
-  say();
-  if (said.size() <= kMostSaid) return fmt::format("{}", fmt::join(said, " / "));
-  const std::size_t left_out = said.size() - kMostSaid;
-  said.erase(said.begin(), said.begin() + static_cast<std::ptrdiff_t>(left_out));
-  return fmt::format("{} others / {}", left_out, fmt::join(said, " / "));
+  CommandsText said;
+  for (std::string& line : sequence_lines(sequence, vocabulary)) said.add(std::move(line));
+  return said.text();
 }
 
 // What comes of the sequences of one case.

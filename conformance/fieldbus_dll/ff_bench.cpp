@@ -77,6 +77,7 @@ void FfBench::set_supply(bool is_on) {
   } else {
     station_->stop(now());
   }
+  note_supply(is_on);
   refresh_iut();
 }
 

@@ -84,6 +84,7 @@ void IsaBench::set_supply(bool is_on) {
   } else {
     station_->stop(now());
   }
+  note_supply(is_on);
   refresh_iut();
 }
 

@@ -115,21 +115,17 @@ std::vector<DrivenDlpdu> LinkBench::listen() {
 }
 
 std::vector<std::string> LinkBench::decode_lines() {
-  constexpr std::size_t kMostLines = 12;
-  std::vector<std::pair<kernel::Time, std::string>> all;
+  DecodedLines lines;
   const auto tell = [&](std::string_view who, const std::vector<DrivenDlpdu>& dlpdus) {
     for (const DrivenDlpdu& one : dlpdus) {
-      all.emplace_back(one.begin, fmt::format("{} {} to {}: {}", who, kernel::describe(one.begin),
-                                              kernel::describe(one.end), words(one)));
+      lines.add(one.begin, fmt::format("{} {} to {}: {}", who, kernel::describe(one.begin),
+                                       kernel::describe(one.end), words(one)));
     }
   };
   tell("tester drove", sent_.all());
   tell("station drove", driven_.all());
-  std::ranges::stable_sort(all, {}, &std::pair<kernel::Time, std::string>::first);
-  const std::size_t first = all.size() - std::min(all.size(), kMostLines);
-  std::vector<std::string> lines;
-  for (std::size_t n = first; n < all.size(); ++n) lines.push_back(all[n].second);
-  return lines;
+  lines.add(supply_);
+  return lines.last();
 }
 
 }  // namespace fieldproof::conformance

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/decoded_lines.hpp"
 #include "conformance/fieldbus_dll/driven_dlpdus.hpp"
 #include "conformance/line_bench.hpp"
 #include "protocols/fieldbus_dll/link_rules.hpp"
@@ -103,6 +104,7 @@ class LinkBench : public LineBench {
 
   // The place of the IUT, which is wired to it.
   segment::MediumPort& attach_station(segment::Station& station, const fault::Plan& plan);
+  void note_supply(bool is_on) { supply_.add_supply(now(), is_on); }
 
  private:
   struct Ear final : segment::Tap {
@@ -115,6 +117,7 @@ class LinkBench : public LineBench {
   DrivenDlpdus sent_;
   DrivenDlpdus arrived_;  // under stress, and from the first one on
   Ear ear_;
+  DecodedLines supply_;
   std::uint16_t number_ = 0;
 };
 

@@ -62,9 +62,9 @@ MasterStep rejected(std::string how, std::string reason, MakeFaults faults) {
           [how, reason = std::move(reason), faults = std::move(faults)](RingScene& scene) {
             CycleFaults suffers;
             faults(scene, suffers);
+            const std::string what = fmt::format("{} ({})", how, text_of(suffers));
             scene.suffered = scene.bench.suffer(scene.judge, std::move(suffers));
             const auto& [is_accepted, held, offered, seen, id_cycles] = scene.suffered;
-            const std::string what = fmt::format("{}, number {} of them", how, scene.round);
             scene.judge.expect(!is_accepted, reason, what + ": rejected", "the cycle is accepted");
             scene.judge.expect(seen == held, "rejected_inputs_seen",
                                fmt::format("{}: the inputs before, {:04X}h", what, fmt::join(held, "h ")),

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "conformance/commands_text.hpp"
 #include "conformance/interbus/master_mutants.hpp"
 #include "conformance/interbus/master_side.hpp"
 #include "conformance/interbus/master_vocabulary.hpp"
@@ -77,11 +78,10 @@ class MasterSequenceRun {
 
   void run(const Sequence& sequence) {
     power({.ring = ring_of(0)});
-    std::string done;
+    CommandsText done;
     for (const SequenceCommand& command : sequence.commands) {
-      done += (done.empty() ? "" : "; ") +
-              command_lines({.commands = {command}}, master_sequence_role().vocabulary).front();
-      judge_.begin_step(done);
+      done.add(command_lines({.commands = {command}}, master_sequence_role().vocabulary).front());
+      judge_.begin_step(done.text());
       align(static_cast<MasterWord>(command.word));
       for (MasterSide& side : sides_) execute(side, command);
       compare();

@@ -67,6 +67,9 @@ struct CycleFaults {
   bool is_none() const;
 };
 
+// "octet 4 changed by 0Fh, with a check that fits; the register 8 bits longer".
+std::string text_of(const CycleFaults& faults);
+
 // A cycle of the master as it was seen on the line.
 struct SeenCycle {
   std::uint64_t number = 0;  // from 0

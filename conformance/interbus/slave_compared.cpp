@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <utility>
 
+#include "conformance/commands_text.hpp"
 #include "conformance/interbus/other_codings.hpp"
 #include "conformance/interbus/slave_acts.hpp"
 #include "conformance/interbus/slave_cases.hpp"
@@ -42,11 +43,11 @@ void begin_anew(SlaveTwins& twins) {
 void run(SlaveTwins& twins, CaseJudge& judge, const Commands& commands) {
   begin_anew(twins);
   SlaveActs acts(twins);
-  std::string done;
+  CommandsText done;
   for (const SequenceCommand& one : commands) {
     acts.act(one, judge);
-    done += (done.empty() ? "" : "; ") + command_lines({.commands = {one}}, vocabulary()).front();
-    if (!twins.agree(judge, done)) return;
+    done.add(command_lines({.commands = {one}}, vocabulary()).front());
+    if (!twins.agree(judge, done.text())) return;
   }
 }
 

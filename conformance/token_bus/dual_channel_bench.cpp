@@ -107,11 +107,16 @@ void ManagerBench::on_channel_event(const token_bus::ChannelEvent& event, kernel
 }
 
 std::vector<std::string> ManagerBench::decode_lines() const {
-  return {shown_end("the manager requested of A", requested_[0].text()),
-          shown_end("the manager requested of B", requested_[1].text()),
-          shown_end("the manager indicated", indicated_.text()),
-          fmt::format("the manager reported: {}",
-                      events_.empty() ? "nothing" : fmt::format("{}", fmt::join(events_, ", ")))};
+  std::vector<std::string> lines = driven_lines([&](const segment::Link& link) {
+    return SideLog(&link == &mac_in_ ? SideLog::Side::requests : SideLog::Side::mac,
+                   token_bus::mac_symbol_rate(configuration().rules));
+  });
+  lines.push_back(shown_end("the manager requested of A", requested_[0]));
+  lines.push_back(shown_end("the manager requested of B", requested_[1]));
+  lines.push_back(shown_end("the manager indicated", indicated_));
+  lines.push_back(fmt::format("the manager reported: {}",
+                              events_.empty() ? "nothing" : fmt::format("{}", fmt::join(events_, ", "))));
+  return lines;
 }
 
 }  // namespace fieldproof::conformance

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -11,6 +14,7 @@
 #include "conformance/case_bench.hpp"
 #include "conformance/running_case.hpp"
 #include "conformance/token_bus/judgeable_rules.hpp"
+#include "conformance/token_bus/translator_sides.hpp"
 #include "harness/field/pics.hpp"
 #include "protocols/token_bus/rules.hpp"
 
@@ -81,18 +85,42 @@ class SidesBench : public CaseBench, private segment::Station {
     line::Waveform wave{start, rate + rate / kMillion * parts_per_million, std::move(levels)};
     const kernel::Time end = wave.end();
     link.drive(wave);
+    driven_.push_back({&link, std::move(wave)});
+    if (driven_.size() > kMostDrivenShown) driven_.pop_front();
     return end;
   }
   // A tester is given what comes out of a port.
   virtual void on_driven(segment::PortIndex /*port*/, const line::Waveform& /*wave*/) {}
   // What was seen last of one side, for a report.
-  static std::string shown_end(std::string_view what, const std::string& text) {
-    constexpr std::size_t kMostShown = 160;
-    const std::size_t first = text.size() - std::min(text.size(), kMostShown);
-    return std::string(what) + ": " + (first > 0 ? "..." : "") + text.substr(first);
+  static std::string shown_end(std::string_view what, const SideLog& log) {
+    const std::string& text = log.last_text();
+    const std::size_t first = text.size() - std::min(text.size(), kMostUnitsShown);
+    return fmt::format("{}: {}{}", what, first > 0 ? "..." : "",
+                       text.empty() ? "nothing" : text.substr(first));
+  }
+  // What testers drove last, as the side of each link reads it, with the rate of its units.
+  template <typename SideOf>
+  std::vector<std::string> driven_lines(SideOf side_of) const {
+    std::vector<std::string> lines;
+    for (const Driven& one : driven_) {
+      SideLog log = side_of(*one.link);
+      log.on_wave(one.wave);
+      const std::string& text = log.text();
+      lines.push_back(fmt::format("tester drove {} at {}: {}{}", one.link->name(),
+                                  kernel::describe(one.wave.start), text.substr(0, kMostUnitsShown),
+                                  text.size() > kMostUnitsShown ? "..." : ""));
+    }
+    return lines;
   }
 
  private:
+  struct Driven {
+    const segment::Link* link;
+    line::Waveform wave;
+  };
+  static constexpr std::size_t kMostDrivenShown = 4;
+  static constexpr std::size_t kMostUnitsShown = 160;
+
   void receive(segment::PortIndex port, const line::Waveform& wave) override { on_driven(port, wave); }
   void on_time(kernel::Time) override {}
   kernel::Time next_time() const override { return kernel::kNever; }
@@ -101,6 +129,7 @@ class SidesBench : public CaseBench, private segment::Station {
   std::unique_ptr<Device> device_;
   std::size_t tester_;
   std::size_t seat_;
+  std::deque<Driven> driven_;
 };
 
 }  // namespace fieldproof::conformance

@@ -81,6 +81,7 @@ void TokenBench::set_power(bool is_on) {
   } else {
     station_->stop(now());
   }
+  if (is_on != is_powered_) supply_.add_supply(now(), is_on);
   is_powered_ = is_on;
   refresh_iut();
 }
@@ -157,21 +158,17 @@ std::optional<DrivenFrame> TokenBench::next(kernel::Time limit) {
 }
 
 std::vector<std::string> TokenBench::decode_lines() {
-  constexpr std::size_t kMostLines = 12;
-  std::vector<std::pair<kernel::Time, std::string>> all;
+  DecodedLines lines;
   const auto add = [&](std::string_view who, std::span<const DrivenFrame> frames) {
     for (const DrivenFrame& one : frames) {
-      all.emplace_back(one.begin, fmt::format("{} {} to {}: {}", who, kernel::describe(one.begin),
-                                              kernel::describe(one.end), one.text()));
+      lines.add(one.begin, fmt::format("{} {} to {}: {}", who, kernel::describe(one.begin),
+                                       kernel::describe(one.end), one.text()));
     }
   };
   add("tester drove", sent());
   add("station drove", driven());
-  std::ranges::stable_sort(all, {}, &std::pair<kernel::Time, std::string>::first);
-  const std::size_t first = all.size() - std::min(all.size(), kMostLines);
-  std::vector<std::string> lines;
-  for (std::size_t n = first; n < all.size(); ++n) lines.push_back(all[n].second);
-  return lines;
+  lines.add(supply_);
+  return lines.last();
 }
 
 void TokenBench::ask() {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/decoded_lines.hpp"
 #include "conformance/line_bench.hpp"
 #include "conformance/token_bus/driven_frames.hpp"
 #include "protocols/token_bus/device.hpp"
@@ -129,6 +130,7 @@ class TokenBench final : public LineBench {
   DrivenFrames sent_;
   std::unique_ptr<token_bus::StationDevice> station_;
   bool is_powered_ = false;
+  DecodedLines supply_;
   bool may_leave_ = false;
   std::uint16_t number_ = 0;
 };

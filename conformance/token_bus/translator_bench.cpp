@@ -82,8 +82,14 @@ void TranslatorBench::command_and_receive(SideCommand command, std::size_t symbo
 }
 
 std::vector<std::string> TranslatorBench::decode_lines() const {
-  return {shown_end("the translator sent", sent_.text()),
-          shown_end("the translator indicated", indicated_.text())};
+  std::vector<std::string> lines = driven_lines([&](const segment::Link& link) {
+    return &link == &phy_in_
+               ? SideLog(SideLog::Side::phy, configuration().rules.phy_bit_rate)
+               : SideLog(SideLog::Side::requests, token_bus::mac_symbol_rate(configuration().rules));
+  });
+  lines.push_back(shown_end("the translator sent", sent_));
+  lines.push_back(shown_end("the translator indicated", indicated_));
+  return lines;
 }
 
 }  // namespace fieldproof::conformance

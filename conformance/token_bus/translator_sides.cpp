@@ -199,7 +199,7 @@ void SideLog::on_wave(const line::Waveform& wave) {
 }
 
 void SideLog::clear() {
-  text_.clear();
+  if (!text_.empty()) cleared_ = std::exchange(text_, {});
   times_.clear();
   begin_ = end_ = kernel::kNever;
 }

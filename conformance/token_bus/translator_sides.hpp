@@ -72,6 +72,8 @@ class SideLog final : public segment::Tap {
   void on_wave(const line::Waveform& wave) override;
   void clear();
   const std::string& text() const { return text_; }
+  // For a report: where nothing was driven since, what `clear` took away.
+  const std::string& last_text() const { return text_.empty() ? cleared_ : text_; }
   bool empty() const { return text_.empty(); }
   // Anything but idle in units that begin in this span.
   bool was_driven(kernel::Time from, kernel::Time until) const;
@@ -86,6 +88,7 @@ class SideLog final : public segment::Tap {
   Side side_;
   std::int64_t unit_rate_;
   std::string text_;
+  std::string cleared_;
   std::vector<kernel::Time> times_;
   kernel::Time begin_ = kernel::kNever;
   kernel::Time end_ = kernel::kNever;

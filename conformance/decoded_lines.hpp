@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/kernel/time.hpp"
+
+// What happened on a bench, for a finding: what was driven, and what else was done, in the order of its
+// instants.
+namespace fieldproof::conformance {
+
+class DecodedLines {
+ public:
+  void add(kernel::Time when, std::string text) { all_.emplace_back(when, std::move(text)); }
+  // Nothing of a supply that is there from the begin.
+  void add_supply(kernel::Time when, bool is_on);
+  void add(const DecodedLines& others) { all_.insert(all_.end(), others.all_.begin(), others.all_.end()); }
+  // Those that are shown; where there are none, a line that says so.
+  std::vector<std::string> last() const;
+
+ private:
+  std::vector<std::pair<kernel::Time, std::string>> all_;
+};
+
+}  // namespace fieldproof::conformance
