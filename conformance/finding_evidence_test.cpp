@@ -1,4 +1,4 @@
-// What a finding shows of its bench, for a reader who does not know the defect.
+// Subject: what a finding shows of its bench, for a reader who does not know the defect.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>
