@@ -49,7 +49,7 @@ void LineWatch::judge(CaseJudge& judge) const {
     judge.fail("transmissions_overlap",
                {{fmt::format("on the line to {}, each transmission begins when the one before has ended",
                              place.line)},
-                fmt::format("{} times not; the first time {} too early", place.monitor.count(),
+                fmt::format("{} that begin before; the first {} before", place.monitor.count(),
                             kernel::describe(first.measured)),
                 first.time});
   }

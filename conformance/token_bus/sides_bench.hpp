@@ -84,8 +84,8 @@ class SidesBench : public CaseBench, private segment::Station {
     constexpr std::int64_t kMillion = 1'000'000;
     line::Waveform wave{start, rate + rate / kMillion * parts_per_million, std::move(levels)};
     const kernel::Time end = wave.end();
+    driven_.push_back({&link, wave});
     link.drive(wave);
-    driven_.push_back({&link, std::move(wave)});
     if (driven_.size() > kMostDrivenShown) driven_.pop_front();
     return end;
   }

@@ -146,6 +146,7 @@ kernel::Duration HostBench::characters(double count) const {
 
 void HostBench::set_power(bool is_on) {
   host_->set_power(is_on, now());
+  if (now() > kernel::kStart) note(Deed{now(), is_on ? "the supply returned" : "the supply went"});
   refresh_iut();
 }
 
@@ -349,6 +350,8 @@ std::string HostBench::line_of(const Seen& seen) {
   if (const auto* event = std::get_if<HostEvent>(&seen)) return "PC was told: " + text_of(*event);
   constexpr std::size_t kMostOctets = 12;
   const Deed& deed = std::get<Deed>(seen);
+  if (deed.octets.empty() && deed.levels == 0)
+    return fmt::format("{} at {}", deed.what, kernel::describe(deed.when));
   const auto first = std::span(deed.octets).first(std::min(deed.octets.size(), kMostOctets));
   const std::string what = deed.levels > 0 ? fmt::format("{} levels", deed.levels)
                                            : fmt::format("{:02X}{}", fmt::join(first, " "),

@@ -164,6 +164,7 @@ std::uint16_t NodeBench::valves_of(std::uint8_t data0, std::uint8_t data1) const
 
 void NodeBench::set_power(bool is_on) {
   node_->set_power(is_on, now());
+  supply_.add_supply(now(), is_on);
   // Without supply no solenoid is held, whatever the node had driven.
   if (!is_on) boards_.drive_valves(0, now());
   refresh_iut();
@@ -238,17 +239,17 @@ void NodeBench::clear_observations() {
 }
 
 std::vector<std::string> NodeBench::decode_lines() {
-  constexpr std::size_t kMostLines = 12;
-  std::vector<std::string> lines;
+  DecodedLines happened;
   const auto tell = [&](std::string_view who, const std::vector<Transmission>& all) {
-    const std::size_t first = all.size() - std::min(all.size(), kMostLines);
-    for (const Transmission& one : std::span(all).subspan(first)) {
-      lines.push_back(fmt::format("{} {} to {}:{}", who, kernel::describe(one.driver_on),
-                                  kernel::describe(one.driver_off), characters_text(one)));
+    for (const Transmission& one : all) {
+      happened.add(one.driver_on, fmt::format("{} {} to {}:{}", who, kernel::describe(one.driver_on),
+                                              kernel::describe(one.driver_off), characters_text(one)));
     }
   };
   tell("tester drove", sent_.transmissions());
   tell("node drove", answers());
+  happened.add(supply_);
+  std::vector<std::string> lines = happened.last();
   const std::uint16_t valves = boards_.valves();
   lines.push_back(fmt::format("valves {:02X} {:02X}", valves & 0xFF, valves >> 8));
   return lines;

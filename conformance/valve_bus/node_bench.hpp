@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "conformance/comparison/twin_line.hpp"
+#include "conformance/decoded_lines.hpp"
 #include "conformance/line_bench.hpp"
 #include "conformance/valve_bus/arrived_frames.hpp"
 #include "conformance/valve_bus/declarations.hpp"
@@ -147,6 +148,7 @@ class NodeBench final : public LineBench {
 
   judge::Pics pics_;
   valve_bus::NodeConfiguration configuration_;
+  DecodedLines supply_;
   kernel::Duration distance_;
   valve_bus::CharacterCodec codec_;
   valve_bus::ValveBlock boards_;
