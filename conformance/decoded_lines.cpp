@@ -6,9 +6,13 @@
 
 namespace fieldproof::conformance {
 
+std::string_view supply_text(bool is_on) {
+  return is_on ? "the supply returned" : "the supply went";
+}
+
 void DecodedLines::add_supply(kernel::Time when, bool is_on) {
   if (when == kernel::kStart) return;
-  add(when, fmt::format("the supply {} at {}", is_on ? "returned" : "went", kernel::describe(when)));
+  add(when, fmt::format("{} at {}", supply_text(is_on), kernel::describe(when)));
 }
 
 std::vector<std::string> DecodedLines::last() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,9 @@
 // What happened on a bench, for a finding: what was driven, and what else was done, in the order of its
 // instants.
 namespace fieldproof::conformance {
+
+// "the supply went", "the supply returned".
+std::string_view supply_text(bool is_on);
 
 class DecodedLines {
  public:

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
 #include "conformance/interbus/ring_emulator.hpp"
 
@@ -20,17 +22,18 @@ std::string text_of(const CycleFaults& faults) {
   if (faults.longer_bits != 0)
     said.push_back(fmt::format("the register {} bits {}", std::abs(faults.longer_bits),
                                faults.longer_bits > 0 ? "longer" : "shorter"));
-  const auto say_at = [&](int telegram, std::string_view what) {
-    if (telegram >= 0) said.push_back(fmt::format("{} {}", what, telegram));
-  };
-  say_at(faults.dropped, "without telegram");
-  say_at(faults.duplicated, "twice telegram");
-  say_at(faults.inserted, "one more in front of telegram");
-  say_at(faults.stop_missing, "no stop bit of telegram");
-  say_at(faults.flag_flipped, "the flag changed of telegram");
-  say_at(faults.header_flipped, "the header changed of telegram");
-  say_at(faults.marked_by, "the status word marked by station");
-  say_at(faults.also_marked_by, "and by station");
+  const std::array<std::pair<int, std::string_view>, 8> places{{
+      {faults.dropped, "telegram {} left out"},
+      {faults.duplicated, "telegram {} twice"},
+      {faults.inserted, "one more telegram in front of telegram {}"},
+      {faults.stop_missing, "telegram {} without its stop bit"},
+      {faults.flag_flipped, "telegram {} with its flag bit changed"},
+      {faults.header_flipped, "telegram {} with its header changed"},
+      {faults.marked_by, "the status word marked by station {}"},
+      {faults.also_marked_by, "the status word marked by station {}"},
+  }};
+  for (const auto& [place, text] : places)
+    if (place >= 0) said.push_back(fmt::format(fmt::runtime(text), place));
   if (faults.status_flag_flipped) said.emplace_back("the flag changed of the status telegram behind it");
   if (faults.trailing_telegram) said.emplace_back("one more telegram behind the last");
   if (faults.stuck) said.push_back(fmt::format("the return line held at {}", *faults.stuck ? 1 : 0));

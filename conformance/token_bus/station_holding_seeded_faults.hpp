@@ -9,15 +9,6 @@
 // Stations of the token bus that hold the token, or recover from a failure, otherwise.
 namespace fieldproof::conformance::token_seeded_faults {
 
-using kernel::Duration;
-using kernel::Time;
-using token_bus::AccessState;
-using token_bus::Frame;
-using token_bus::FrameKind;
-using token_bus::Reception;
-using token_bus::StationConfiguration;
-using token_bus::TokenStation;
-
 // ---- failure ----
 
 class StagesOtherwise : public TokenStation {

@@ -10,16 +10,6 @@
 // Stations of the token bus that receive, or report what they received, otherwise.
 namespace fieldproof::conformance::token_seeded_faults {
 
-using kernel::Time;
-using token_bus::Frame;
-using token_bus::FrameReader;
-using token_bus::Octets;
-using token_bus::Reception;
-using token_bus::ReceptionKind;
-using token_bus::Rules;
-using token_bus::StationConfiguration;
-using token_bus::TokenStation;
-
 // ---- reception ----
 
 // Reads frames with a reader of its own.

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <optional>
-#include <utility>
 #include <vector>
 
-#include "harness/line/frame_check.hpp"
 #include "protocols/token_bus/token_station.hpp"
 
 // Stations of the token bus that differ from the reference in one decision each; station_mutants.cpp names

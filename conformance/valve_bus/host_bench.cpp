@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "conformance/decoded_lines.hpp"
 #include "harness/iut/misbehaviour.hpp"
 #include "protocols/valve_bus/host.hpp"
 
@@ -146,7 +147,7 @@ kernel::Duration HostBench::characters(double count) const {
 
 void HostBench::set_power(bool is_on) {
   host_->set_power(is_on, now());
-  if (now() > kernel::kStart) note(Deed{now(), is_on ? "the supply returned" : "the supply went"});
+  if (now() > kernel::kStart) note(Deed{now(), supply_text(is_on)});
   refresh_iut();
 }
 

@@ -202,7 +202,7 @@ function resultRows(data) {
 
 // What the letters of the table stand for, each list of meanings once.
 function criteriaOf(data) {
-  const lists = new Map(documentsOf(data, "fieldproof/emc/1").filter(({ content }) => content.tests.length > 0)
+  const lists = new Map(documentsOf(data, "fieldproof/emc/1").filter(({ content }) => content.tests.length > 0 && content.criteria)
       .map(({ content }) => [JSON.stringify(content.criteria), content]));
   if (lists.size === 0) return null;
   return [element("h3", {}, "What the criteria mean"), [...lists.values()].map(criteriaPart)];
