@@ -413,7 +413,8 @@ TEST_F(CampaignOverRanks, LosesNothingByAWrongHostFileOrATermination) {
   mpirun(
       "-n 2 \"$F\" campaign some.json --out ended & until [ -s ended/journal.jsonl ]; do sleep 0.01; done; "
       "kill -TERM $!; wait $!");
-  EXPECT_EQ(campaign({"--resume", "ended"}).exit_code, 1);
+  const Called resumed = campaign({"--resume", "ended"});
+  EXPECT_EQ(resumed.exit_code, 1) << resumed.err;
   EXPECT_EQ(read("ended/campaign.json"), expected);
 }
 

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "harness/config/document.hpp"
@@ -28,6 +30,10 @@ std::string head_of(std::string_view result) {
 }
 
 constexpr std::size_t kLargestFile = std::size_t{1} << 30;  // octets
+
+// 2 s for a writer that is ending.
+constexpr std::chrono::milliseconds kBetweenLooks{10};
+constexpr int kMostLooks = 200;
 
 constexpr std::string_view kResultKey = R"("result":)";
 
@@ -61,17 +67,23 @@ CheckedLines::CheckedLines(fs::path path, Durability durability, const OnLine& o
   file_.number = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (file_.number < 0) throw_file_error(path_, "the journal cannot be opened for writing");
   // Before it is read: what is torn now may be what another program is just writing.
-  if (::flock(file_.number, LOCK_EX | LOCK_NB) != 0) {
-    if (errno == EWOULDBLOCK) {
+  lock();
+  const LinesRead read = read_checked_lines(path_, on_line);
+  if (read.is_torn && ::ftruncate(file_.number, static_cast<off_t>(read.intact_size)) != 0) {
+    throw_file_error(path_, "the torn last line of the journal cannot be cut off");
+  }
+}
+
+// A writer that has been told to end may need a moment: mpirun does not wait for its ranks.
+void CheckedLines::lock() const {
+  for (int look = 0; ::flock(file_.number, LOCK_EX | LOCK_NB) != 0; ++look) {
+    if (errno != EWOULDBLOCK && errno != EINTR) throw_file_error(path_, "the journal cannot be locked");
+    if (look == kMostLooks) {
       throw kernel::Error(
           kernel::ErrorKind::configuration,
           fmt::format("{}: another program writes this run; wait until it ends, or end it", path_.string()));
     }
-    throw_file_error(path_, "the journal cannot be locked");
-  }
-  const LinesRead read = read_checked_lines(path_, on_line);
-  if (read.is_torn && ::ftruncate(file_.number, static_cast<off_t>(read.intact_size)) != 0) {
-    throw_file_error(path_, "the torn last line of the journal cannot be cut off");
+    std::this_thread::sleep_for(kBetweenLooks);
   }
 }
 

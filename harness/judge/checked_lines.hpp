@@ -7,7 +7,8 @@
 // bit) and size are of the text of the result. Reading verifies both: a last line that does not hold is torn
 // and dropped; any other one is kernel::Error(configuration) that names file and line.
 //
-// Limits: one writer at a time, which is held: a second one is an Error(configuration).
+// Limits: one writer at a time, which is held: a second one waits 2 s for it to end, and then is an
+// Error(configuration).
 #pragma once
 
 #include <cstdint>
@@ -56,6 +57,8 @@ class CheckedLines {
     OpenFile& operator=(const OpenFile&) = delete;
     ~OpenFile();
   };
+
+  void lock() const;
 
   std::filesystem::path path_;
   Durability durability_;
