@@ -19,6 +19,7 @@
 #include "cli/emc_run.hpp"
 #include "cli/emc_search.hpp"
 #include "cli/emc_tests.hpp"
+#include "cli/emc_json.hpp"
 #include "cli/emc_text.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"

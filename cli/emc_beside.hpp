@@ -6,7 +6,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "cli/emc_text.hpp"
+#include "cli/emc_campaign.hpp"
 #include "conformance/planned_network.hpp"
 
 namespace fieldproof::cli {

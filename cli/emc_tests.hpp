@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/emc_text.hpp"
+#include "cli/emc_campaign.hpp"
 #include "cli/settings.hpp"
 
 namespace fieldproof::cli {

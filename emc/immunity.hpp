@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -47,6 +48,7 @@ struct ImmunitySettings {
 };
 
 enum class Criterion : std::uint8_t { a, b, c, d };
+inline constexpr std::array kCriteria = {Criterion::a, Criterion::b, Criterion::c, Criterion::d};
 // "A" ..., and what it means here.
 std::string_view name(Criterion criterion);
 std::string_view text_of(Criterion criterion);
