@@ -115,7 +115,7 @@ class BurstsWhileMeasuring {
          fmt::format("{}, {}, level {}, profile {} ({})", emc::text_of(bursts_.repetition),
                      emc::text_of(bursts_.polarity), bursts_.level.text(), profile_.name, profile_.title)});
     for (const std::string& caveat : emc::caveats_of(profile_)) {
-      measurement.conditions.push_back({"unverified", caveat});
+      measurement.conditions.push_back({std::string(reports::kCaveat), caveat});
     }
   }
 

@@ -9,6 +9,7 @@
 #include "reports/diff.hpp"
 #include "reports/document_verdict.hpp"
 #include "reports/history.hpp"
+#include "reports/measurement_writer.hpp"
 #include "reports/text_summary.hpp"
 
 namespace fieldproof::reports {
@@ -102,6 +103,32 @@ void add_caveat(JoinedVerdict& joined, const std::string& text, const std::strin
   auto found = std::ranges::find(joined.caveats, text, &JoinedCaveat::text);
   if (found == joined.caveats.end()) found = joined.caveats.insert(found, {text, {}});
   if (std::ranges::find(found->names, name) == found->names.end()) found->names.push_back(name);
+}
+
+// Of a comparison the second run is handed over, so its verdicts alone count.
+void add_unverified_sources(const PageContent& content, JoinedVerdict& joined) {
+  std::size_t unverified = 0;
+  std::size_t judged = 0;
+  std::vector<std::string> names;
+  for (const PageRun& page : content.runs) {
+    if (content.is_comparison && &page == &content.runs.front()) continue;
+    const std::size_t of_run = unverified_verdicts(page.stored.run);
+    unverified += of_run;
+    judged += count(page.stored.run).judged;
+    if (of_run > 0) names.push_back(page.name);
+  }
+  const std::string text = unverified_text(unverified, judged);
+  if (text.empty()) return;
+  for (const std::string& name : names) add_caveat(joined, text, name);
+}
+
+// Measurements of earlier programs have their caveats among the conditions.
+void add_caveats_of(const nlohmann::json& document, const std::string& name, JoinedVerdict& joined) {
+  for (const nlohmann::json& caveat : document.value("unverified", nlohmann::json::array()))
+    add_caveat(joined, caveat.get<std::string>(), name);
+  for (const nlohmann::json& condition : document.value("conditions", nlohmann::json::array())) {
+    if (condition.at("name") == kCaveat) add_caveat(joined, condition.at("value").get<std::string>(), name);
+  }
 }
 
 // "4 runs: 2 failed, 1 inconclusive (12 of 170 judged cases failed)"
@@ -201,13 +228,12 @@ JoinedVerdict joined_verdict(const PageContent& content) {
     joined.runs.push_back(judged_run(run.name, run.stored.run));
     for (const std::string& caveat : run.stored.run.identity.caveats) add_caveat(joined, caveat, run.name);
   }
+  add_unverified_sources(content, joined);
   for (const PageDocument& document : content.documents) {
     const nlohmann::json json = nlohmann::json::parse(document.json, nullptr, true, true);
     const Said said = said_by_document(json);
     joined.documents.push_back({document.name, said.verdict, said.sentence});
-    for (const nlohmann::json& caveat : json.value("unverified", nlohmann::json::array())) {
-      add_caveat(joined, caveat.get<std::string>(), document.name);
-    }
+    add_caveats_of(json, document.name, joined);
   }
   if (content.history) joined.histories.push_back(judged_history(*content.history));
   for (const auto* parts : {&joined.runs, &joined.documents, &joined.histories}) {

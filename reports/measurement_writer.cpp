@@ -193,6 +193,10 @@ std::string measurement_json(const measure::Measurement& measurement) {
   }
   for (const std::string& failure : measurement.failures) json["failures"].push_back(as_utf8(failure));
   for (const measure::Condition& one : measurement.conditions) {
+    if (one.name == kCaveat) {
+      json["unverified"].push_back(as_utf8(one.value));
+      continue;
+    }
     json["conditions"].push_back({{"name", as_utf8(one.name)}, {"value", as_utf8(one.value)}});
   }
   for (const measure::Series& series : measurement.series) {

@@ -6,10 +6,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "harness/measure/measurement.hpp"
 
 namespace fieldproof::reports {
+
+// The name of a condition that is a caveat, in a sentence. In the JSON it stands in "unverified".
+inline constexpr std::string_view kCaveat = "unverified";
 
 std::string measurement_json(const measure::Measurement& measurement);
 

@@ -103,6 +103,13 @@ TEST(MeasurementWriter, TextOfAFileNeverReachesTheTerminalAsAControl) {
   EXPECT_EQ(text.find('\x07'), std::string::npos);
 }
 
+TEST(MeasurementWriter, CaveatsStandApartFromConditions) {
+  const auto json = nlohmann::json::parse(measurement_json(sample_burst_measurement()));
+  EXPECT_EQ(json.at("unverified"), nlohmann::json({"The coupling is not calibrated."}));
+  for (const auto& one : json.at("conditions")) EXPECT_NE(one.at("name"), "unverified");
+  EXPECT_FALSE(nlohmann::json::parse(measurement_json(sample_measurement())).contains("unverified"));
+}
+
 TEST(MeasurementWriter, TextSaysWhichRowsDiffer) {
   measure::Measurement measurement = sample_measurement();
   EXPECT_NE(measurement_text(measurement).find("theory and measurement: holds"), std::string::npos);

@@ -35,6 +35,12 @@ judge::Verdict headline(const Run& run) {
   return heaviest;
 }
 
+std::size_t unverified_verdicts(const Run& run) {
+  return static_cast<std::size_t>(std::ranges::count_if(run.cases, [](const judge::CaseResult& result) {
+    return result.verdict >= judge::Verdict::pass && !judge::is_verified(result.reference.standing);
+  }));
+}
+
 std::vector<PlannedFault> planned_faults(const Run& run) {
   std::vector<PlannedFault> faults;
   for (const fault::PlanPart& part : run.identity.plan) faults.push_back({.part = part});

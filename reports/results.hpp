@@ -90,6 +90,9 @@ judge::Verdict counted_verdict(const judge::CaseResult& result);
 // The heaviest of what its results count as; none when there are no results.
 judge::Verdict headline(const Run& run);
 
+// Verdicts, from pass to error, of cases whose source is unverified.
+std::size_t unverified_verdicts(const Run& run);
+
 // What a part of the plan of faults did in the cases that ran under it.
 struct PlannedFault {
   fault::PlanPart part;

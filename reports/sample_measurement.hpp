@@ -2,6 +2,7 @@
 #pragma once
 
 #include "harness/measure/measurement.hpp"
+#include "reports/measurement_writer.hpp"
 
 namespace fieldproof::reports {
 
@@ -49,6 +50,19 @@ inline measure::Measurement sample_measurement() {
   series.trace.output = {{3 * kernel::kMicrosecond, true}};
   series.course = sample_course();
   measurement.series = {series};
+  return measurement;
+}
+
+// The same with bursts on the line, and what must be said of them.
+inline measure::Measurement sample_burst_measurement() {
+  measure::Measurement measurement = sample_measurement();
+  measurement.conditions.push_back({"cycle time by f4", "1.252000001 ms, of that 574.766668 us of waiting"});
+  measurement.series[0].comparisons[0].measured = measurement.series[0].comparisons[0].theory * (1 - 1.1e-9);
+  measure::Curve lags{"lag", "us", 1e6, {}};
+  for (std::int64_t n = 0; n < 40; ++n) lags.values.add(measure::Phase::quiet, (n % 7 + 1) * 1'000'000);
+  measurement.series[0].curves.push_back(lags);
+  measurement.conditions.push_back({"bursts", "5 kHz, +, level 3 (1000 V), profile A"});
+  measurement.conditions.push_back({std::string(kCaveat), "The coupling is not calibrated."});
   return measurement;
 }
 

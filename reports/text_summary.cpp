@@ -96,12 +96,6 @@ std::string counts_text(const Counts& counts) {
   return out + "\n";
 }
 
-std::size_t unverified_verdicts(const Run& run) {
-  return static_cast<std::size_t>(std::count_if(run.cases.begin(), run.cases.end(), [](const CaseResult& r) {
-    return r.verdict >= Verdict::pass && !judge::is_verified(r.reference.standing);
-  }));
-}
-
 // A part of a plan that never hit may be a slip of its writer, and a pass then says less than it seems.
 std::string planned_faults_text(const Run& run) {
   constexpr std::size_t kMostLines = 20;
@@ -193,6 +187,14 @@ std::string finding_text(const RunIdentity& identity, const CaseResult& result, 
   return out + field("reproduce", escaped_line(command));
 }
 
+std::string unverified_text(std::size_t unverified, std::size_t judged) {
+  if (unverified == 0) return "";
+  // All that judge; a case that does not apply rests on nothing.
+  judged = std::max(unverified, judged);
+  return fmt::format("{} of these {} verdicts ({:.0f} %) rest on an unverified source", unverified, judged,
+                     100.0 * static_cast<double>(unverified) / static_cast<double>(judged));
+}
+
 std::string summary_text(const Run& run, const TextOptions& options) {
   std::string out;
   std::size_t told = 0;
@@ -212,12 +214,8 @@ std::string summary_text(const Run& run, const TextOptions& options) {
   }
   const Verdict heaviest = headline(run);
   out += painted(heaviest, name(heaviest), options) + ": " + counts_text(count(run));
-  if (const std::size_t unverified = unverified_verdicts(run); unverified > 0) {
-    // All that judge; a case that does not apply rests on nothing.
-    const std::size_t judged = std::max(unverified, static_cast<std::size_t>(count(run).judged));
-    out += fmt::format("{} of these {} verdicts ({:.0f} %) rest on an unverified source\n", unverified,
-                       judged, 100.0 * static_cast<double>(unverified) / static_cast<double>(judged));
-  }
+  if (const std::string text = unverified_text(unverified_verdicts(run), count(run).judged); !text.empty())
+    out += text + "\n";
   out += planned_faults_text(run);
   for (const std::string& caveat : run.identity.caveats) out += "unverified: " + escaped_line(caveat) + "\n";
   for (const std::string& stale : run.identity.stale_expectations) {

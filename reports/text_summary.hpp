@@ -39,6 +39,9 @@ std::string finding_text(const RunIdentity& identity, const judge::CaseResult& r
 // the command that reproduces it.
 std::string summary_text(const Run& run, const TextOptions& options = {});
 
+// How many of `judged` verdicts rest on an unverified source; empty: none does.
+std::string unverified_text(std::size_t unverified, std::size_t judged);
+
 // One line of valid UTF-8 without control characters; `escaped_block` keeps line feeds and tabs.
 std::string escaped_line(std::string_view text);
 std::string escaped_block(std::string_view text);
