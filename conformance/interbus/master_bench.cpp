@@ -45,7 +45,7 @@ MasterBench::MasterBench(const NoNeeds&, const MasterSetting& setting)
 
 MasterBench::~MasterBench() = default;
 
-void MasterBench::power_up(std::vector<VirtualStation> ring) {
+void MasterBench::power_up(std::vector<VirtualStation> ring, const std::function<void()>& tap) {
   if (master_ != nullptr) {
     stop();
     // What is still on its way arrives, and the last cycle ends; no station of the old ring is driven any
@@ -77,6 +77,7 @@ void MasterBench::power_up(std::vector<VirtualStation> ring) {
   finished_ = {};
   armed_.reset();
   faulted_number_.reset();
+  if (tap) tap();
   start();
 }
 
@@ -137,13 +138,14 @@ kernel::Duration MasterBench::cycle_time() const {
 bool MasterBench::wait_for_run() {
   const auto cycles = static_cast<std::int64_t>(8 + 5 * ring_->stations().size());
   bool is_running = false;
-  run_until(
-      [&] {
-        const MasterState state = status().state;
-        is_running = state == MasterState::run && finished_.data_count > 0;
-        return is_running || state == MasterState::bus_stop;
-      },
-      200 * kernel::kMillisecond + cycles * longest_cycle());
+  const auto is_over = [&] {
+    const MasterState state = status().state;
+    is_running = state == MasterState::run && finished_.data_count > 0;
+    return is_running || state == MasterState::bus_stop;
+  };
+  // Each cycle begins after what was said ahead before.
+  if (!run_until(is_over, 200 * kernel::kMillisecond + cycles * longest_cycle()))
+    run_until(is_over, cycles * said_ahead());
   return is_running;
 }
 
@@ -179,7 +181,7 @@ void MasterBench::on_cycle_end(kernel::Time now, bool data_cycle, bool accepted)
 
 bool MasterBench::run_cycle() {
   const std::uint64_t before = finished_.count;
-  const kernel::Time end = now() + 2 * longest_cycle();
+  const kernel::Time end = now() + said_ahead() + 2 * longest_cycle();
   while (finished_.count == before) {
     if (segment().scheduler().next() > end) return false;
     segment().step();
@@ -194,7 +196,7 @@ bool MasterBench::run_cycle() {
 }
 
 void MasterBench::run_to_cycle(std::uint64_t number) {
-  const kernel::Time end = now() + 2 * longest_cycle();
+  const kernel::Time end = now() + said_ahead() + 2 * longest_cycle();
   while (ring_->cycle_count() <= number && segment().scheduler().next() <= end) segment().step();
 }
 

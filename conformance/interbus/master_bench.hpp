@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -48,7 +49,8 @@ class MasterBench final : public CaseBench {
   }
 
   // A fresh master on a fresh ring; starts it. Everything from an earlier power-up is gone, but time goes on.
-  void power_up(std::vector<interbus::VirtualStation> ring);
+  // `tap` is called when its lines are there, and before it may drive them.
+  void power_up(std::vector<interbus::VirtualStation> ring, const std::function<void()>& tap = nullptr);
   // The same, and waits for run.
   void bring_up(CaseJudge& judge, std::vector<interbus::VirtualStation> ring);
   bool wait_for_run();
@@ -71,6 +73,8 @@ class MasterBench final : public CaseBench {
   void request_id_cycle();
 
   void run_for(kernel::Duration duration) { wait(duration); }
+  // How far ahead the master has driven already: that cannot be taken back, and is waited for.
+  kernel::Duration said_ahead() const { return std::max(out_->driven_until(), now()) - now(); }
   // False when the duration has passed without the condition.
   bool run_until(const std::function<bool()>& condition, kernel::Duration at_most);
 

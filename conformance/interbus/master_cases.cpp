@@ -19,11 +19,21 @@ MasterCase canary() {
 
 const std::vector<MasterCase>& master_cases() {
   static const std::vector<MasterCase> cases = [] {
-    static constexpr std::array kChapters{
-        master_identification_cases, master_data_cycle_cases,  master_rejection_cases,
-        master_supervision_cases,    master_ring_change_cases, master_timing_cases,
-        master_application_cases,    master_skew_cases,        master_immunity_cases,
-        master_compared_cases,       master_cases_at_length,   master_id_cycle_cases};
+    static constexpr std::array kChapters{master_identification_cases,
+                                          master_data_cycle_cases,
+                                          master_rejection_cases,
+                                          master_supervision_cases,
+                                          master_ring_change_cases,
+                                          master_timing_cases,
+                                          master_application_cases,
+                                          master_skew_cases,
+                                          master_immunity_cases,
+                                          master_compared_cases,
+                                          master_cases_at_length,
+                                          master_id_cycle_cases,
+                                          master_cases_of_telegrams_at_ends,
+                                          master_cases_of_rings_at_ends,
+                                          master_cases_of_starts};
     auto all = cases_of<MasterCase>(kChapters, {});
     all.push_back(canary());
     return all;

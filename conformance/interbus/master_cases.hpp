@@ -27,5 +27,8 @@ std::vector<MasterCase> master_immunity_cases();
 std::vector<MasterCase> master_compared_cases();
 std::vector<MasterCase> master_cases_at_length();
 std::vector<MasterCase> master_id_cycle_cases();
+std::vector<MasterCase> master_cases_of_telegrams_at_ends();
+std::vector<MasterCase> master_cases_of_rings_at_ends();
+std::vector<MasterCase> master_cases_of_starts();
 
 }  // namespace fieldproof::conformance

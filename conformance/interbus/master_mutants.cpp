@@ -1,5 +1,6 @@
 #include "conformance/interbus/master_mutants.hpp"
 
+#include "conformance/interbus/master_at_ends_mutants.hpp"
 #include "conformance/interbus/master_at_length_seeded_faults.hpp"
 #include "conformance/interbus/master_id_cycle_seeded_faults.hpp"
 #include "conformance/interbus/master_seeded_faults.hpp"
@@ -199,7 +200,7 @@ std::vector<MasterMutants::Row> master_check_rows() {
 }  // namespace
 
 const MasterMutants& master_mutants() {
-  static const MasterMutants table("master", {master_rows, master_check_rows});
+  static const MasterMutants table("master", {master_rows, master_rows_at_ends, master_check_rows});
   return table;
 }
 

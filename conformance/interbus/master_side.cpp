@@ -83,14 +83,17 @@ void MasterSide::power(const MasterScene& scene) {
   bench_.set_script([this](const interbus::RingEmulator::CycleInfo& info, CycleFaults& faults) {
     on_ring_cycle(info.is_id_cycle, faults);
   });
-  bench_.power_up(scene.ring);
-  bench_.rules() = usual;
-  const kernel::Time powered = bench_.now();
-  bench_.tap_arrived(*returned_);
-  bench_.keep(returned_);
   driven_ = std::make_shared<DrivenTelegrams>(bench_.rules());
-  bench_.tap_driven(*driven_);
+  bench_.keep(returned_);
   bench_.keep(driven_);
+  kernel::Time powered{};
+  // Its first cycle may be driven within the order to start.
+  bench_.power_up(scene.ring, [&] {
+    powered = bench_.now();
+    bench_.tap_arrived(*returned_);
+    bench_.tap_driven(*driven_);
+  });
+  bench_.rules() = usual;
   await_run();
   // A bus stop has a silence of its own.
   if (is_idle()) {
@@ -387,73 +390,6 @@ std::int64_t MasterSide::cycle_times() {
   const kernel::Duration beside = span - count * cycle_time;
   const kernel::Duration bit = kernel::levels_duration(1, bench_.rules().bit_rate);
   return -bit <= beside && beside <= bit ? count : -1;
-}
-
-void MasterSide::add_images(Values& values) const {
-  const bool is_held =
-      !bench_.may_answer("outputs_after_bus_stop", "zero") && bench_.status().state == MasterState::bus_stop;
-  for (unsigned word = 0; word < bench_.ring().word_count() && is_ring_right_; ++word)
-    values.push_back(is_held ? 0 : bench_.master().output(word));
-}
-
-// ---- what is compared ----
-
-void MasterSide::note_cycle() {
-  const SeenCycle& sent = bench_.ring().last_cycle();
-  const kernel::Time when = sent.start;
-  Values cycle{sent.is_id_cycle ? 1 : 0, static_cast<std::int64_t>(sent.transfer_octets), cycle_times()};
-  // Of an ID cycle the acknowledgement is compared, no more: how interfaces are switched is the
-  // recognition's.
-  const std::size_t words = sent.transfer_octets / 2;
-  for (std::size_t n = 0; n < words; ++n) {
-    const auto word = sent.word(2 * n).value_or(0);
-    if (!sent.is_id_cycle) cycle.push_back(word);
-  }
-  constexpr std::size_t kCheckAndStatus = 4;
-  for (std::size_t n = sent.transfer_octets + kCheckAndStatus; n < sent.octets.size(); ++n)
-    cycle.push_back(sent.octets[n]);
-  cycles_.push_back({cycle, when});
-  const std::vector<std::uint16_t> held = bench_.inputs();
-  Values inputs{bench_.finished().is_accepted ? 1 : 0};
-  inputs.insert(inputs.end(), held.begin(), held.end());
-  inputs_.push_back({inputs, when});
-  const MasterStatus status = bench_.status();
-  const bool is_in_run = status.state == MasterState::run;
-  Values report{is_in_run ? 1 : 0, is_in_run && status.quality_bit ? 1 : 0};
-  if (is_in_run) {
-    report.push_back(static_cast<std::int64_t>(status.peripheral_faults.size()));
-    report.insert(report.end(), status.peripheral_faults.begin(), status.peripheral_faults.end());
-    report.insert(report.end(), status.reconfigurations.begin(), status.reconfigurations.end());
-    report.push_back(status.consecutive_bad);
-    report.push_back(status.has_fault_location ? 1 : 0);
-    report.push_back(status.has_fault_location ? status.fault_location.from : 0);
-    report.push_back(status.has_fault_location ? status.fault_location.to : 0);
-  }
-  add_images(report);
-  reports_.push_back({report, when});
-}
-
-void MasterSide::note_state(bool is_located) {
-  constexpr auto bit_of = [](MasterState one) { return std::uint64_t{1} << static_cast<unsigned>(one); };
-  // Whether the first cycles are driven in the state before is the master's choice, and a fault may be found
-  // by one; so is at which of its stations a ring is refused.
-  constexpr std::uint64_t kOfChoice =
-      bit_of(MasterState::ready) | bit_of(MasterState::bus_stop) | bit_of(MasterState::locating);
-  const MasterStatus status = bench_.status();
-  const bool is_refused = !status.configuration_error.empty();
-  const std::uint64_t left_out = kOfChoice | (is_refused ? bit_of(MasterState::identification) : 0);
-  Values state{static_cast<std::int64_t>(status.state), is_refused ? 1 : 0,
-               static_cast<std::int64_t>(std::exchange(states_seen_, 0) & ~left_out)};
-  if (status.state == MasterState::run) {
-    for (const interbus::FoundStation& one : status.stations)
-      state.insert(state.end(), {one.id_code, one.words, one.before, one.on_branch ? 1 : 0});
-  }
-  if (is_located) {
-    state.insert(state.end(),
-                 {status.has_fault_location ? 1 : 0, status.fault_location.from, status.fault_location.to});
-  }
-  if (status.state != MasterState::run) add_images(state);
-  states_.push_back({state, bench_.now()});
 }
 
 }  // namespace fieldproof::conformance

@@ -107,6 +107,7 @@ class MasterSide {
   void give(EarlyOrder order);
   void await_stop();
   void await_outputs_of_run();
+  void await_three_cycles_of_run();
   void expect_no_start();
   kernel::Duration longest_recognition() const;
   void limit_ring(const MasterScene& scene);

@@ -182,6 +182,7 @@ void set_outputs(MasterBench& bench, CaseJudge& judge) {
 void stop(MasterBench& bench, CaseJudge& judge) {
   bench.stop();
   bench.run_for(10 * kernel::kMillisecond);
+  bench.run_for(bench.said_ahead());
   judge.expect(!bench.ring().last_cycle().is_id_cycle && bench.ring().output(1) == 0, "outputs_not_cleared",
                "a last data cycle with outputs 0", "the outputs stay");
 }

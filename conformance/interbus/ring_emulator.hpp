@@ -59,6 +59,7 @@ struct CycleFaults {
   int header_flipped = -1;
   bool status_flag_flipped = false;     // of the first status telegram behind the cycle
   bool trailing_telegram = false;       // one more data telegram behind the last
+  unsigned trailing_gap_bits = 2;       // between them
   int marked_by = -1;                   // this station marks the status word and sets its message bit
   int also_marked_by = -1;              // and this one
   std::optional<std::uint16_t> mark{};  // the bits that it sets, instead of those of the rules

@@ -202,8 +202,7 @@ void RingEmulator::emit(const line::Telegram& telegram, std::uint8_t octet) {
   // At its place after any gap, however long the usual ones are: a master need not wait for a later one.
   const bool is_last = checked_ == kCheckOctets + rules_.end_telegrams;
   if (faults_.trailing_telegram && is_last) {
-    constexpr std::size_t kGap = 2;
-    emit_levels(telegram_bit_ + line::kDataTelegramLevels + kGap,
+    emit_levels(telegram_bit_ + line::kDataTelegramLevels + faults_.trailing_gap_bits,
                 code_.levels_of(line::kDataTelegram | line::kControl, 0), line::kDataTelegramLevels);
   }
 }

@@ -181,7 +181,8 @@ class Master:
     def order(self, now, characters):
         if characters[0] == START and self.state in (OFF, BUS_STOP):
             self.say("", now)
-            self.put(PLACE, 0, now)
+            for item in PLACE, DATA_CYCLES, ID_CYCLES, REJECTED, REJECTED_DATA:
+                self.put(item, 0, now)
             self.enter(READY, now)
             self.begin_search(now)
         elif characters[0] == STOP:
@@ -328,7 +329,8 @@ class Master:
             delay += 2 * s["max_cable_m"] * s["cable_delay_ps_per_m"]
         else:
             delay = self.ring_delay
-        self.verdict_at = now + frame + frame // 64 + delay + 14 * coding.bit
+        # A telegram too many that begins within 13 bits after the last one is over by then.
+        self.verdict_at = now + frame + frame // 64 + delay + 27 * coding.bit
         span = frame + delay + s["software_time"]
         if not self.search:
             span = -(-span // self.cycle_time) * self.cycle_time if self.is_id else self.cycle_time

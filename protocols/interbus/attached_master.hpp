@@ -34,7 +34,7 @@ enum class MasterOrder : std::uint16_t { start = 1, stop = 2, id_cycle = 3, outp
 inline constexpr unsigned kMostErrorTexts = 32;
 
 inline constexpr iut::Item kMasterState = 0;  // kept, in the order of MasterState
-inline constexpr iut::Item kDataCycles = 1;   // kept, since power-up
+inline constexpr iut::Item kDataCycles = 1;   // kept, since the last start
 inline constexpr iut::Item kIdCycles = 2;
 inline constexpr iut::Item kRejectedCycles = 3;
 inline constexpr iut::Item kRejectedDataCycles = 4;

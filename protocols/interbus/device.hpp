@@ -95,7 +95,7 @@ struct MasterConfiguration {
   std::vector<Copy> copy;
 };
 
-// The upper tester's view of a master. All counters since power-up.
+// The upper tester's view of a master. All counters since the last start.
 struct MasterStatus {
   MasterState state = MasterState::off;
   std::vector<FoundStation> stations;

@@ -152,7 +152,9 @@ void Master::finish_recognition() {
 
 void Master::finish_locating() {
   const auto& found = topology_.stations();
-  const auto [configured, seen] = std::ranges::mismatch(stations_, found);
+  const auto [configured, seen] = std::ranges::mismatch(
+      stations_, found,
+      [this](const FoundStation& known, const FoundStation& one) { return is_same_station(one, known); });
   if (configured != stations_.end()) {
     const auto index = static_cast<int>(configured - stations_.begin());
     fault_location_ = FaultLocation{configured->before, index};

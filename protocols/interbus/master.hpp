@@ -76,6 +76,8 @@ class Master : public MasterDevice, private TopologyDecisions {
   virtual bool accepts_inputs(std::span<const std::uint16_t>) const { return true; }
   virtual bool accepts_silence() const { return false; }
   virtual bool hears(const line::Waveform&) const { return true; }
+  // A telegram after the last one that begins within so many bits belongs to the cycle.
+  virtual std::int64_t guard_bits() const { return line::kDataTelegramLevels; }
 
   // ---- decisions about what is sent ----
   virtual std::uint8_t id_select() const { return line::kSelect; }
@@ -105,6 +107,9 @@ class Master : public MasterDevice, private TopologyDecisions {
   // What to do when a good ID cycle shows another ring than the configured one: false to go on with it.
   virtual bool refuses_changed_ring() const { return true; }
   virtual bool searches_fault() const { return true; }
+  virtual bool is_same_station(const FoundStation& found, const FoundStation& configured) const {
+    return found == configured;
+  }
   virtual FaultLocation locate(int first_marked) const;
   virtual bool restarts_with_recognition() const { return true; }
   virtual bool reports_peripheral_fault() const { return true; }

@@ -8,8 +8,6 @@ namespace fieldproof::interbus {
 namespace {
 
 constexpr kernel::Duration kStatusRun = kernel::kMillisecond;
-// A telegram after the last expected one begins within this many bits, if it belongs to the frame.
-constexpr std::int64_t kGuardBits = line::kDataTelegramLevels;
 // How much later than computed a frame may come back: two telegrams, and this part of the frame for stations
 // whose clock runs slower.
 constexpr std::int64_t kLateBits = 2 * line::kDataTelegramLevels;
@@ -211,8 +209,9 @@ void Master::on_telegram(const line::Waveform& wave, const line::Telegram& teleg
   }
   const kernel::Time start = wave.time_of(telegram.level);
   if (start >= verdict_at_ || !returned_.add(telegram)) return;
-  verdict_at_ = std::min(
-      start + kernel::levels_duration(line::kDataTelegramLevels + kGuardBits, rules().bit_rate), action_at_);
+  verdict_at_ =
+      std::min(start + kernel::levels_duration(line::kDataTelegramLevels + guard_bits(), rules().bit_rate),
+               action_at_);
 }
 
 }  // namespace fieldproof::interbus
