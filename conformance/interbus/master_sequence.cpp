@@ -1,14 +1,12 @@
 #include "conformance/interbus/master_sequence.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <array>
 
 #include "conformance/commands_text.hpp"
 #include "conformance/interbus/master_mutants.hpp"
 #include "conformance/interbus/master_side.hpp"
+#include "conformance/interbus/master_side_notes.hpp"
 #include "conformance/interbus/master_vocabulary.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "protocols/interbus/master.hpp"
@@ -16,47 +14,15 @@
 namespace fieldproof::conformance {
 namespace {
 
-std::string cycle_text(std::span<const std::int64_t> values) {
-  const std::string after =
-      values[2] < 0 ? "no whole number of cycle times" : fmt::format("{} cycle times", values[2]);
-  if (values[0] != 0) return fmt::format("ID cycle of {} octets, {} after the one before", values[1], after);
-  return fmt::format("data cycle of {} octets, {} after the one before: {:04X}", values[1], after,
-                     fmt::join(values.subspan(3), " "));
-}
-
-std::string inputs_text(std::span<const std::int64_t> values) {
-  return fmt::format("{}, inputs {:04X}", values[0] != 0 ? "accepted" : "rejected",
-                     fmt::join(values.subspan(1), " "));
-}
-
-std::string report_text(std::span<const std::int64_t> values) {
-  if (values[0] == 0) return "not in run";
-  return fmt::format(
-      "run, quality bit {}, messages, bad cycles in a row, place of the last fault, outputs {}", values[1],
-      fmt::join(values.subspan(2), " "));
-}
-
-std::string state_text(std::span<const std::int64_t> values) {
-  const auto state = interbus::name(static_cast<interbus::MasterState>(values[0]));
-  std::string text = fmt::format("{}{}", state, values[1] != 0 ? ", configuration refused" : "");
-  for (unsigned n = 0; n < 6; ++n) {
-    if ((values[2] >> n & 1) == 0) continue;
-    text += fmt::format(", cycles in {}", interbus::name(static_cast<interbus::MasterState>(n)));
-  }
-  if (values.size() > 3)
-    text += fmt::format(", stations, place of the fault or outputs {}", fmt::join(values.subspan(3), " "));
-  return text;
-}
-
 constexpr std::size_t kCost = 3;  // a ring is recognised in each sequence
 
 constexpr std::array kStatesOfOrders{interbus::MasterState::ready, interbus::MasterState::identification,
                                      interbus::MasterState::locating, interbus::MasterState::bus_stop};
 
-constexpr EventKind kCycles{"cycles", "no_data_cycle", "cycle_unasked", "cycle_wrong", cycle_text};
-constexpr EventKind kInputs{"verdicts", "no_data_cycle", "cycle_unasked", "inputs_wrong", inputs_text};
-constexpr EventKind kReports{"reports", "no_data_cycle", "cycle_unasked", "report_wrong", report_text};
-constexpr EventKind kStates{"states", "state_missing", "state_unasked", "state_wrong", state_text};
+constexpr EventKind kCycles{"cycles", "no_data_cycle", "cycle_unasked", "cycle_wrong", master_cycle_text};
+constexpr EventKind kInputs{"verdicts", "no_data_cycle", "cycle_unasked", "inputs_wrong", master_inputs_text};
+constexpr EventKind kReports{"reports", "no_data_cycle", "cycle_unasked", "report_wrong", master_report_text};
+constexpr EventKind kStates{"states", "state_missing", "state_unasked", "state_wrong", master_state_text};
 
 class MasterSequenceRun {
  public:
