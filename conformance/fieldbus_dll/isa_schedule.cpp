@@ -45,6 +45,13 @@ IsaSchedule overdue_second() {
                     {35 * kOctetAt31250, IsaType::et, 0x22, Priority::normal, 0}}};
 }
 
+// A scheduler that does not receive the EE waits V(RR), which is far longer than V(MID) and V(ST).
+void with_long_reply_wait(fieldbus_dll::IsaConfiguration& configuration) {
+  constexpr unsigned kSlots = 11;
+  configuration.rules.link.response_delay_slots = kSlots;
+  configuration.rules.reply_wait_octets = kSlots * configuration.rules.link.slot_time_octets;
+}
+
 constexpr int kOctetsOfPeriod = 200;
 constexpr int kItemInPeriod = 20;
 constexpr std::uint8_t kHolderInSchedule = 0x21;
@@ -206,7 +213,7 @@ std::vector<IsaCase> isa_schedule_cases() {
                                     [](IsaScene& scene) { scene.reply(scene.bench.ee(kHolderInSchedule)); }),
                  expected<IsaScene>("the next token, which is due, V(MID) to V(MID) and V(ST) after the EE",
                                     expect_without_wait)}},
-               {.schedule = overdue_second()}),
+               {.schedule = overdue_second(), .change = with_long_reply_wait}),
       on_chart(
           must_in_time("fieldbus_dll/isa_las/schedule/goes_round", "ISA-29",
                        "The scheduler delegates its token in the order and at the times of its schedule.",
