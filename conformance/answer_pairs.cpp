@@ -15,6 +15,7 @@ namespace {
 std::vector<judge::Pics::Answer> answers_to_try(const judge::PicsItem& item) {
   std::vector<judge::Pics::Answer> answers;
   if (item.kind == judge::PicsKind::truth) answers = {false, true};
+  if (item.kind == judge::PicsKind::text) answers.assign(item.words.begin(), item.words.end());
   if (item.kind != judge::PicsKind::number && item.kind != judge::PicsKind::duration) return answers;
   for (const std::int64_t one : std::set{item.least, item.least + 1, item.most - 1, item.most}) {
     if (one < item.least || one > item.most) continue;
@@ -30,7 +31,8 @@ constexpr std::size_t kDeclarationsPerDerived = 3;
 
 class RoleWithAnswers {
  public:
-  RoleWithAnswers(const Suite& suite, const RoleRow& role) : suite_(suite) {
+  RoleWithAnswers(const Suite& suite, const RoleRow& role, const PlaysDeclared& plays)
+      : suite_(suite), name_(role.name), plays_(plays) {
     for (const TestCase& one : suite.cases())
       if (one.role() == role.name && !is_canary(one)) cases_.push_back(&one);
     for (const judge::PicsItem& item : role.pics_items) {
@@ -56,12 +58,13 @@ class RoleWithAnswers {
     }
   }
 
-  void run(const ValueRow& row, bool has_derived, std::vector<std::string>& accused) const {
+  void run(const ValueRow& row, bool has_derived, AnswerPairs& pairs) const {
     for (const TestCase* one : cases_) {
       if (!has_derived && has_tag(*one, "derived")) continue;
       const judge::CaseResult result = run_case({&suite_, one}, setup_of(row)).outcome.result;
+      if (result.verdict == judge::Verdict::inconclusive) pairs.left_open.insert(one->id);
       if (result.verdict >= judge::Verdict::fail)
-        accused.push_back(fmt::format("{}: {} with {}", one->id, result.reason, text_of(row)));
+        pairs.accused.push_back(fmt::format("{}: {} with {}", one->id, result.reason, text_of(row)));
     }
   }
 
@@ -73,6 +76,8 @@ class RoleWithAnswers {
     setup.pics.emplace();
     for (std::size_t n = 0; n < row.size(); ++n)
       setup.pics->declare(items_[n].first, items_[n].second.at(row[n]));
+    if (!plays_) return setup;
+    if (auto who = plays_(name_, *setup.pics)) setup.implementations.push_back(std::move(*who));
     return setup;
   }
 
@@ -85,22 +90,26 @@ class RoleWithAnswers {
   }
 
   const Suite& suite_;
+  std::string name_;
+  const PlaysDeclared& plays_;
   std::vector<const TestCase*> cases_{};
   std::vector<std::pair<std::string, std::vector<judge::Pics::Answer>>> items_{};
 };
 
 }  // namespace
 
-std::vector<AnswerPairs> pairs_of_answers(const Suite& suite, unsigned one_of) {
+std::vector<AnswerPairs> pairs_of_answers(const Suite& suite, unsigned one_of,
+                                          const PlayersOfAnswers& players) {
   std::vector<AnswerPairs> all;
   for (const RoleRow& row : suite.role_rows()) {
-    const RoleWithAnswers role(suite, row);
+    if (row.name == players.left_out) continue;
+    const RoleWithAnswers role(suite, row, players.plays);
     if (role.values().size() < 2) continue;
     const auto may_be = [&role](const ValueRow& values) { return role.may_be(values); };
     const CoveringArray array = covering_array(role.values(), may_be, kernel::Random(1));
     AnswerPairs& pairs = all.emplace_back(row.name, std::size_t{0}, array.pairs, array.left_out);
     for (std::size_t n = 0; n < array.rows.size(); n += one_of) {
-      role.run(array.rows[n], n % kDeclarationsPerDerived == 0, pairs.accused);
+      role.run(array.rows[n], n % kDeclarationsPerDerived == 0, pairs);
       ++pairs.declarations;
     }
   }

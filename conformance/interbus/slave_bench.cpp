@@ -313,6 +313,7 @@ std::unique_ptr<SlaveBench> SlaveBench::twin(int side) const {
   SlaveSetting setting;
   setting.position = position_;
   setting.returns = side < 0 ? ReturnParts::telegrams : ReturnParts::whole;
+  setting.pics = pics_;  // it decides what is sent, too
   std::unique_ptr<SlaveBench> made(new SlaveBench(std::move(network), setting));
   made->kept_alive_ = kept_alive_;
   return made;

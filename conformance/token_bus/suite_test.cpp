@@ -25,6 +25,9 @@ TEST(TokenBusSuite, NoTwoAnswersOfAPicsAccuseAReference) {
   ASSERT_EQ(roles.size(), 2U);
   for (const AnswerPairs& one : roles) {
     EXPECT_THAT(one.accused, testing::IsEmpty()) << one.role;
+    // With some declared times its precondition, a ring of three, is not met.
+    EXPECT_THAT(one.left_open, testing::Each("token_bus/channel_manager/ring/survives_the_cut_of_a_channel"))
+        << one.role;
     EXPECT_GT(one.declarations, 0U) << one.role;
     EXPECT_LT(one.refused, one.pairs / 2) << one.role;
     RecordProperty(one.role, std::to_string(one.declarations) + " declarations of " +

@@ -27,6 +27,7 @@ TEST(ValveBusSuite, NoTwoAnswersOfAPicsAccuseAReference) {
   ASSERT_EQ(roles.size(), 2U);
   for (const AnswerPairs& one : roles) {
     EXPECT_THAT(one.accused, testing::IsEmpty()) << one.role;
+    EXPECT_THAT(one.left_open, testing::IsEmpty()) << one.role;
     EXPECT_GT(one.declarations, 0U) << one.role;
     EXPECT_LT(one.refused, one.pairs / 2) << one.role;
     RecordProperty(one.role, std::to_string(one.declarations) + " declarations of " +
