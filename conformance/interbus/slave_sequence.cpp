@@ -124,7 +124,8 @@ const SequenceRole& slave_sequence_role() {
        {DerivedKind::words, {"output_octets_swapped", "outputs_wrong"}},
        {DerivedKind::states, {"does_not_resynchronise", "telegram_not_passed"}},
        {DerivedKind::repetitions, {"latches_5_ms_late", "outputs_at_another_time"}},
-       {DerivedKind::settings, {"input_bit_stuck", "octet_wrong"}}}};
+       {DerivedKind::settings, {"input_bit_stuck", "octet_wrong"}},
+       {DerivedKind::drawn, {"does_not_resynchronise", "telegram_not_passed"}}}};
   return role;
 }
 

@@ -17,6 +17,7 @@ constexpr std::size_t kCommandSymbols = 64;
 // Symbols. Whether an end delimiter without its E is one is left open.
 constexpr std::size_t kMostOfACut = 118;
 constexpr std::int64_t kRest = 200;  // symbols, longer than any blanking
+constexpr std::size_t kCost = 3;     // frames and jabbers of thousands of symbols, on three benches
 
 // Of a bit, a fault inverts it, is a signal error, or takes its carrier; one that is dropped is idle.
 SideBits with_bit_faults(const std::string& text, const std::vector<SequenceFault>& faults) {
@@ -279,10 +280,15 @@ const SequenceRole& translator_sequence_role() {
        .tags = {},
        .catches = {}},
       translator_vocabulary(),
-      // Of cut requests and spoilt bits the page leaves open what is right: for `check` only.
-      {{DerivedKind::words, {"reset_enables_transmitter", "sent_other"}},
+      // Of cut requests and spoilt bits only that is looked at which the page says.
+      {{DerivedKind::values, {"answer_of_28_symbols_at_most", "indication_other"}},
+       {DerivedKind::faults, {"error_loses_the_lock", "indication_other"}},
+       {DerivedKind::words, {"reset_enables_transmitter", "sent_other"}},
+       {DerivedKind::states, {"disable_toggles", "indication_other"}},
        {DerivedKind::repetitions, {"zero_and_one_exchanged", "sent_other"}},
-       {DerivedKind::settings, {"transmitter_on_from_the_start", "sent_other"}}}};
+       {DerivedKind::settings, {"transmitter_on_from_the_start", "sent_other"}},
+       {DerivedKind::drawn, {"line_leaks_into_loopback", "indication_other"}}},
+      kCost};
   return role;
 }
 
