@@ -16,10 +16,10 @@
 #include "cli/emc_beside.hpp"
 #include "cli/emc_case.hpp"
 #include "cli/emc_fit.hpp"
+#include "cli/emc_json.hpp"
 #include "cli/emc_run.hpp"
 #include "cli/emc_search.hpp"
 #include "cli/emc_tests.hpp"
-#include "cli/emc_json.hpp"
 #include "cli/emc_text.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/interruption.hpp"
@@ -123,7 +123,8 @@ class Campaign {
     done_.is_complete = delivered == planned_.size() && done_.tests.size() == planned_.size();
     add_worst_probe(response);
     add_to_search();
-    session_.terminal.print(emc_hint(done_));
+    if (const std::string hint = emc_hint(done_); !hint.empty())
+      session_.terminal.print(fmt::format("hint: {}\n", hint));
     if (!done_.has_bursts || !session_.settings.is_set("sensitivity") || !done_.is_complete) return;
     const auto highest = std::ranges::max_element(
         planned_, {}, [](const EmcTest& test) { return test.level.open_circuit_volts(); });

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "cli/emc_beside.hpp"
+#include "cli/emc_text.hpp"
 #include "emc/evidence.hpp"
 #include "harness/field/facts.hpp"
 
@@ -280,6 +281,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                              {"balance", balance_json(total.counts)},
                              {"upper_bound_of_share", total.upper_bound_of_share}}}};
   if (campaign.search) document["thresholds"] = search_json(*campaign.search);
+  if (std::string hint = emc_hint(campaign); !hint.empty()) document["hint"] = std::move(hint);
   if (campaign.sensitivity) document["sensitivity"] = sensitivity_json(*campaign.sensitivity);
   return document.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

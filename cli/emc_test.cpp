@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -78,6 +79,9 @@ TEST_F(EmcVerb, SearchesWhereEachCriterionIsSeenFirst) {
   EXPECT_LT(line, called.out.find("criterion")) << "above the table";
   EXPECT_HOLDS(called.out, "hint: all levels lie on one side, above where A ends; A was found up to ");
   const nlohmann::json document = json("one.json");
+  EXPECT_HOLDS(called.out, "hint: " + document.at("hint").get<std::string>() + "\n");
+  EXPECT_TRUE(std::regex_search(called.out, std::regex("the longest took \\d+\\.\\d{3} [mu]?s\n")))
+      << called.out;
   EXPECT_EQ(document.at("tests").size(), 16U);
   const nlohmann::json& found = document.at("thresholds");
   const double a = found.at("a_up_to_volts").get<double>();
@@ -121,6 +125,7 @@ TEST_F(EmcVerb, SearchesBesideLevelsThatAreGivenWhereItIsAsked) {
   EXPECT_HOLDS(given.out, "below where A ends; --search finds where that is");
   const Called asked = call({"--test-levels", "x:30,3", "--search", "--json", "asked.json"});
   EXPECT_EQ(asked.out.find("hint:"), std::string::npos) << asked.out;
+  EXPECT_FALSE(json("asked.json").contains("hint"));
   EXPECT_EQ(json("asked.json").at("thresholds").at("searched_to_volts"), 4000);
   EXPECT_EQ(call({"--channel", "bsc:0.001", "--search"}).exit_code, 64);
 }

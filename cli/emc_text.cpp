@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/emc_beside.hpp"
@@ -182,14 +183,26 @@ std::string emc_hint(const EmcCampaign& campaign) {
       campaign.search && campaign.search->thresholds.is_complete
           ? fmt::format("A was found up to {:.0f} V", campaign.search->thresholds.a_up_to_volts)
           : "--search finds where that is";
-  return fmt::format("hint: all levels lie on one side, {}; {}\n", side, where);
+  return fmt::format("all levels lie on one side, {}; {}", side, where);
+}
+
+// Picoseconds say nothing of a recovery.
+std::string rounded_text(kernel::Duration time) {
+  double value = static_cast<double>(time.count());
+  std::string_view unit = "ps";
+  for (const std::string_view larger : {"ns", "us", "ms", "s"}) {
+    if (value < 1000) break;
+    value /= 1000;
+    unit = larger;
+  }
+  return fmt::format("{:.3f} {}", value, unit);
 }
 
 std::string longest_recovery_text(const EmcCampaign& campaign) {
   kernel::Duration longest{};
   for (const EmcTest& test : campaign.tests)
     if (test.result.recovered_by_itself) longest = std::max(longest, test.result.recovery_time);
-  return longest > kernel::Duration{} ? fmt::format("; the longest took {}", kernel::describe(longest)) : "";
+  return longest > kernel::Duration{} ? fmt::format("; the longest took {}", rounded_text(longest)) : "";
 }
 
 std::string emc_summary(const EmcCampaign& campaign) {

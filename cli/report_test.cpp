@@ -54,6 +54,17 @@ TEST_F(ReportVerb, EveryRunHasThePageThatTheVerbWrites) {
   }
 }
 
+TEST_F(ReportVerb, TakesTheDocumentOfSequencesAgainstMutants) {
+  const Called made = call({"matrix", "valve_bus/node", "--sequences", "--seeds", "1", "--commands", "20",
+                            "--json", "detection.json"});
+  ASSERT_TRUE(fs::exists(folder_ / "detection.json")) << made.err;
+  const Called called = call({"report", "detection.json", "--html", "report.html"});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_HOLDS(called.out, "random sequences find a mutant in ");
+  const nlohmann::json data = data_of("report.html");
+  EXPECT_EQ(data["documents"][0]["content"]["roles"][0]["role"], "valve_bus/node");
+}
+
 TEST_F(ReportVerb, JoinsRunsAndDocuments) {
   run("a");
   run("b", {"--seed", "2"});

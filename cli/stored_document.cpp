@@ -68,6 +68,7 @@ std::span<const reports::DocumentKind> document_kinds() {
       reports::DocumentKind{"fieldproof/publication/2", reports::publication_schema},
       reports::DocumentKind{"fieldproof/residual/1", reports::residual_schema},
       reports::DocumentKind{"fieldproof/matrix/1", matrix_schema},
+      reports::DocumentKind{"fieldproof/detection/1", detection_schema},
       reports::DocumentKind{"fieldproof/emc_fit/1", reports::emc_fit_schema},
       reports::DocumentKind{"fieldproof/campaign/1", campaign::campaign_result_schema},
       reports::DocumentKind{"fieldproof/fuzz/1", fuzz_schema},

@@ -5,8 +5,8 @@
 # and so does the word export. The page's Content-Security-Policy names script and styles by their hashes.
 
 set(page_modules
-  dom format data later table charts time_line_model time_line case_detail case_table summary course burst_course timing heat_map thresholds immunity fit fuzz campaign history comparison residual publication
-  matrix coverage cover appendix page)
+  dom format data later table charts time_line_model time_line case_detail case_table summary course burst_course burst_shares timing heat_map thresholds immunity fit fuzz campaign history comparison residual publication
+  matrix detection coverage measured_bursts cover appendix page)
 
 # The octets of a hexadecimal number as base64.
 function(fieldproof_base64 hexadecimal result)

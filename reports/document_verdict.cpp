@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "reports/campaign_content.hpp"
+#include "reports/detection_verdict.hpp"
 
 namespace fieldproof::reports {
 
@@ -251,6 +252,7 @@ Said said_by_document(const Document& document) {
   if (schema.starts_with("fieldproof/emc/")) return said_by_emc(document);
   if (schema.starts_with("fieldproof/measurement/")) return said_by_measurement(document);
   if (schema.starts_with("fieldproof/fuzz/")) return said_by_fuzz(document);
+  if (schema.starts_with("fieldproof/detection/")) return said_by_detection(document);
   if (schema.starts_with("fieldproof/matrix/")) return said_by_matrix(document);
   if (schema.starts_with("fieldproof/publication/")) return said_by_publication(document);
   return {Verdict::none, "holds numbers and no verdict"};

@@ -77,7 +77,7 @@ TEST(HtmlWriter, HoldsEveryResultAsData) {
   EXPECT_EQ(failed["timeline"]["transmissions"].size(), 40U);
   EXPECT_EQ(failed["folder"], "cases/interbus+slave+sample+case_3");
   EXPECT_EQ(run["wall_times_us"][0], 1250);
-  EXPECT_EQ(data["documents"].size(), 8U);
+  EXPECT_EQ(data["documents"].size(), 9U);
   EXPECT_EQ(data["catalogue"]["stories"]["interbus/slave/sample/case_3"]["expected"], "outputs stay");
 }
 

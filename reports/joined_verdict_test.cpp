@@ -240,6 +240,56 @@ TEST(JoinedVerdict, EachCaveatIsSaidOnce) {
   EXPECT_EQ(joined_verdict(content).caveats, expected);
 }
 
+TEST(JoinedVerdict, VerdictsOfUnverifiedSourcesAreCountedOnce) {
+  PageContent content;
+  content.runs = {run_of("a", {Verdict::pass, Verdict::fail}), run_of("b", {Verdict::pass, Verdict::none})};
+  const auto unverify = [&content](std::size_t run, std::size_t at) {
+    content.runs[run].stored.run.cases[at].reference.standing = judge::Standing::own;
+  };
+  EXPECT_TRUE(joined_verdict(content).caveats.empty());
+  unverify(1, 1);
+  EXPECT_TRUE(joined_verdict(content).caveats.empty()) << "it has no verdict";
+  unverify(0, 1);
+  const std::vector<JoinedCaveat> one = {
+      {"1 of these 3 verdicts (33 %) rest on an unverified source", {"a"}}};
+  EXPECT_EQ(joined_verdict(content).caveats, one);
+  unverify(1, 0);
+  const std::vector<JoinedCaveat> both = {
+      {"2 of these 3 verdicts (67 %) rest on an unverified source", {"a", "b"}}};
+  EXPECT_EQ(joined_verdict(content).caveats, both);
+  content.is_comparison = true;
+  const std::vector<JoinedCaveat> second = {
+      {"1 of these 1 verdicts (100 %) rest on an unverified source", {"b"}}};
+  EXPECT_EQ(joined_verdict(content).caveats, second);
+}
+
+// As they are written now, and as conditions of documents of before.
+TEST(JoinedVerdict, CaveatsOfAMeasurementAreSaid) {
+  OrderedJson measurement = OrderedJson::parse(measurement_json(sample_burst_measurement()));
+  const std::vector<JoinedCaveat> expected = {{"The coupling is not calibrated.", {"document.json"}}};
+  EXPECT_EQ(of_document(measurement).caveats, expected);
+  measurement.erase("unverified");
+  EXPECT_TRUE(of_document(measurement).caveats.empty());
+  measurement["conditions"].push_back({{"name", "unverified"}, {"value", expected[0].text}});
+  EXPECT_EQ(of_document(measurement).caveats, expected);
+}
+
+TEST(JoinedVerdict, SequencesAgainstMutantsCountAsTheirVerb) {
+  OrderedJson detection = sample_detection("node");
+  EXPECT_EQ(of_document(detection).documents[0].sentence,
+            "random sequences find a mutant in 3 of 6 trials (50.0 %)");
+  EXPECT_EQ(of_document(detection).verdict, Verdict::fail);
+  detection["roles"][0]["complete"] = false;
+  EXPECT_EQ(of_document(detection).verdict, Verdict::inconclusive);
+  detection["roles"][0]["complete"] = true;
+  detection["roles"][0]["found"] = 6;
+  EXPECT_EQ(of_document(detection).verdict, Verdict::pass);
+  detection["roles"][0]["false_alarms"] = {"seed 3: late"};
+  EXPECT_EQ(of_document(detection).verdict, Verdict::fail);
+  detection["roles"] = OrderedJson::array();
+  EXPECT_EQ(of_document(detection).verdict, Verdict::inconclusive);
+}
+
 TEST(JoinedVerdict, ATerminalGetsNoControlCharacters) {
   PageContent content;
   content.runs = {run_of("a\x1b[2J", {Verdict::pass}), run_of("b", {Verdict::fail})};

@@ -11,6 +11,7 @@
 #include "reports/measurement_writer.hpp"
 #include "reports/publication.hpp"
 #include "reports/sample_campaign.hpp"
+#include "reports/sample_detection.hpp"
 #include "reports/sample_fuzz.hpp"
 #include "reports/sample_measurement.hpp"
 #include "reports/sample_run.hpp"
@@ -77,6 +78,7 @@ inline PageRun sample_page_run() {
       page.timelines[result.id] = sample_timeline(result.id);
       page.files[result.id] = {"case.json", "timeline.json", "trace.txt"};
       result.findings[0].actual = kHostileName;
+      result.findings[0].step = "2 of 3: expected: outputs stay";
     }
     run.cases.push_back(std::move(result));
   }
@@ -145,6 +147,7 @@ inline nlohmann::ordered_json sample_emc() {
         {"d_seen_from_volts", nullptr},
         {"searched_to_volts", 4000}}},
       {"probes", {{{"volts", 48}, {"criterion", "B"}}}}};
+  json["hint"] = "all levels lie on one side, above where A ends; A was found up to 46 V";
   json["sensitivity"] = {{"is_complete", true},
                          {"level", "4 (2000 V)"},
                          {"criterion", "B"},
@@ -222,11 +225,11 @@ inline nlohmann::ordered_json sample_emc() {
              {"accepted_wrong", n / 12},
              {"data_differed", 5 + n / 12}}}}},
          {"line",
-          {{"transmissions", 17000},
-           {"hit", 380},
-           {"changed", 370},
-           {"pulses", 590},
-           {"wrong_levels", 630}}}});
+          {{"transmissions", 1'700'000},
+           {"hit", 38'000},
+           {"changed", 37'000},
+           {"pulses", 59'000},
+           {"wrong_levels", 63'000}}}});
   }
   Ordered channel = {{"channel", "bsc"},
                      {"flip_probability", 0.002},
@@ -323,17 +326,20 @@ inline PageContent sample_page() {
   PageContent content;
   content.catalogue.suite_version = sample_run().identity.suite_version;
   for (const judge::CaseResult& result : sample_page_run().stored.run.cases) {
-    content.catalogue.stories[result.id] = {"one bit of a cycle flips",
-                                            "outputs stay",
-                                            {"1 of 1: expected: outputs stay"},
-                                            {"answers_late, late"}};
+    content.catalogue.stories[result.id] = {
+        "one bit of a cycle flips",
+        "outputs stay",
+        {"1 of 3: the master sends a cycle", "2 of 3: expected: outputs stay",
+         "3 of 3: the master sends another"},
+        {"answers_late, late"}};
   }
   content.runs = {sample_page_run()};
-  content.documents = {{"measurement.json", measurement_json(sample_measurement())},
+  content.documents = {{"measurement.json", measurement_json(sample_burst_measurement())},
                        {"emc.json", sample_emc().dump()},
                        {"residual.json", sample_residual().dump()},
                        {"publication.json", publication_json(sample_publication())},
                        {"matrix.json", sample_matrix().dump()},
+                       {"detection.json", sample_detection(kHostileName).dump()},
                        {"nightly/campaign.json", sample_campaign(kHostileName).dump()},
                        {"fit.json", sample_fit(kHostileName).dump()},
                        {"fuzz.json", sample_fuzz(kHostileName).dump()}};

@@ -34,7 +34,7 @@ const firstRun = data.runs[0];
 const failing = cases.filter((one) => one.verdict === "fail");
 const withTimeLine = Object.entries(firstRun?.cases ?? {}).find(([, more]) => more.timeline)?.[0];
 const sections = ["fieldproof/measurement/1", "fieldproof/emc/1", "fieldproof/residual/1", "fieldproof/publication/2", "fieldproof/matrix/1",
-  "fieldproof/campaign/1", "fieldproof/emc_fit/1", "fieldproof/fuzz/1"]
+  "fieldproof/campaign/1", "fieldproof/emc_fit/1", "fieldproof/fuzz/1", "fieldproof/detection/1"]
     .filter((schema) => data.documents.some(({ content }) => content.schema === schema));
 
 function expect(condition, sentence) {
@@ -227,8 +227,100 @@ await look("the cover tells what was tested and what came out", async (page) => 
   expect(await page.locator("#cover table tbody tr").count() >= data.runs.length, "no results");
   for (const { content } of data.documents.filter((one) => one.content.schema === "fieldproof/emc/1" && one.content.tests.length > 0)) {
     for (const { meaning } of content.criteria) expect(text.includes(meaning), `"${meaning}" is not said`);
-    if (content.tests.some((test) => test.recovered_by_itself && test.recovery_s)) expect(/recovery, from the last pulse.*, [\d.]+ m?s at most/s.test(text), "recovery has no time");
+    if (content.tests.some((test) => test.recovered_by_itself && test.recovery_s)) expect(/recovery, from the last pulse.*, [\d.]+ [mu]?s at most/s.test(text), "recovery has no time");
   }
+});
+
+await look("the cover tells what bursts did to the cycle, what each criterion rests on, and each caveat once", async (page) => {
+  if (!data.cover) return;
+  const text = await page.locator("#cover").innerText();
+  const measured = data.documents.filter(({ content }) => content.schema === "fieldproof/measurement/1");
+  for (const { content } of measured) {
+    const bursts = content.conditions.find(({ name }) => name === "bursts");
+    if (bursts) expect(text.includes(bursts.value) && text.includes("bursts are an uncalibrated model"), "the method hides the bursts");
+    for (const { course } of content.series) {
+      for (const [phase, when] of [["burst", "during bursts"], ["recovery", "in the recovery"]]) {
+        const points = (course?.runs ?? []).flatMap((run) => run.points).filter((one) => one.phase === phase);
+        if (points.length > 0) expect(text.includes(`${course.quantity} ${when}`) && text.includes(`jitter of the ${course.quantity} ${when}`), `no ${phase}`);
+      }
+    }
+  }
+  for (const { content } of data.documents.filter((one) => one.content.schema === "fieldproof/emc/1")) {
+    for (const level of new Set(content.tests.map((test) => test.level))) {
+      const those = content.tests.filter((test) => test.came_up && test.level === level && test.evidence?.text);
+      const worst = those.map(({ criterion }) => criterion).sort().at(-1);
+      expect(those.length === 0 || those.some(({ evidence }) => text.includes(`criterion ${worst} (${evidence.text}`)), `${level} has no evidence`);
+      if (those.some(({ evidence }) => evidence.c_at_most < 1)) expect(text.includes("a longer run could still show"), "what a longer run could show");
+    }
+  }
+  const body = await page.locator("#content").innerText();
+  for (const caveat of data.joined.caveats) expectEqual(body.split(caveat.text).length - 1, 1, `"${caveat.text}"`);
+});
+
+await look("mutants that no sequence finds stand first, and the share of those found above them", async (page) => {
+  for (const [at, { content }] of data.documents.filter((one) => one.content.schema === "fieldproof/detection/1").entries()) {
+    const place = page.locator("#detection > article").nth(at);
+    const counts = await place.locator("table.detection tbody tr").evaluateAll((rows) => rows.map((row) => Number(row.children[2].textContent.split(" ")[0])));
+    expectEqual(counts.length, content.roles.flatMap(({ mutants }) => mutants).length, "mutants");
+    if (content.roles.length === 1) expect(counts.every((one, n) => n === 0 || counts[n - 1] <= one), `in the order ${counts}`);
+    const text = await place.innerText();
+    for (const role of content.roles) expect(text.includes(`found ${role.found} of ${role.of}`), "the share");
+  }
+});
+
+await look("the share of bad exchanges stands over the voltage, with a chart for each repetition rate of two voltages", async (page) => {
+  for (const [at, { content }] of data.documents.filter((one) => one.content.schema === "fieldproof/emc/1").entries()) {
+    const fair = content.tests.filter((test) => test.came_up && test.of_search_s === undefined && test.ledger.balance);
+    const volts = new Map();
+    for (const test of fair) volts.set(test.repetition, (volts.get(test.repetition) ?? new Set()).add(test.open_circuit_volts));
+    const rates = [...volts].filter(([, all]) => all.size > 1).map(([rate]) => rate);
+    const place = page.locator("#immunity > article").nth(at);
+    expectEqual(await place.locator(".shares figure").count(), rates.length, "charts");
+    for (const [n, rate] of rates.entries()) {
+      const figure = place.locator(".shares figure").nth(n);
+      const text = await figure.locator("figcaption, .legend").allInnerTexts().then((all) => all.join(" "));
+      for (const word of [rate, "rejected, +", "accepted wrong, +", "Wilson", "exact 95 % bound"]) expect(text.includes(word), `no "${word}": ${text}`);
+      const label = await figure.locator(".chart").getAttribute("aria-label");
+      const of = fair.filter((test) => test.repetition === rate);
+      for (const test of of.filter(({ ledger }) => ledger.balance.accepted_wrong === 0)) {
+        const bound = 100 * (1 - 0.05 ** (1 / test.ledger.balance.exposed));
+        expect(label.includes(`none at ${test.open_circuit_volts.toLocaleString("en").replace(",", "\u202f")} V, at most ${Number(bound.toPrecision(2))} %`), `no bound in "${label}"`);
+      }
+    }
+  }
+});
+
+await look("histograms are of ten values at least, and a sentence names those that have fewer", async (page) => {
+  const series = data.documents.filter(({ content }) => content.schema === "fieldproof/measurement/1").flatMap(({ content }) => content.series);
+  const all = series.map(({ distributions }) => distributions.flatMap(({ phases }) => Object.values(phases)).filter(({ min, max, histogram }) => min !== max && histogram.length > 1));
+  expectEqual(await page.locator("#timing .chart[aria-label^=Histogram]").count(), all.flat().filter(({ count }) => count >= 10).length, "histograms");
+  expectEqual(await page.locator("#timing .few-values").count(), all.filter((one) => one.some(({ count }) => count < 10)).length, "sentences");
+});
+
+await look("times of the conditions end at the nanosecond, and no deviation is noise", async (page) => {
+  const timing = page.locator("#timing");
+  if (await timing.count() === 0) return;
+  const text = await timing.innerText();
+  for (const found of text.matchAll(/(\d+)\.(\d+) (ms|us)\b/g)) expect(found[2].length <= {ms: 6, us: 3}[found[3]], found[0]);
+  expect(!/e-\d+ %/.test(text), "a deviation with a power of ten");
+});
+
+await check("steps say which were done, which failed and which were not reached", async (page) => {
+  const { stories } = data.catalogue;
+  const one = cases.find(({ id, findings }) => findings.some(({ step }) => stories[id]?.steps.includes(step)));
+  if (!one) return;
+  const { steps } = stories[one.id];
+  const failed = Math.min(...one.findings.map(({ step }) => steps.indexOf(step)).filter((at) => at >= 0));
+  await click(caseLine(page, one.address).locator(".opener"));
+  const texts = await page.locator(`[id="detail-${one.address}"] ol.steps li`).allTextContents();
+  const wanted = steps.map((step, at) => (at < failed ? "done" : at === failed ? "failed" : "not reached"));
+  for (const [at, text] of texts.entries()) expect(text.endsWith(wanted[at]), `step ${at + 1}: "${text}", expected ${wanted[at]}`);
+});
+
+await look("the hint that all levels lie on one side is on the page", async (page) => {
+  const hints = data.documents.map(({ content }) => content.hint).filter(Boolean);
+  expectEqual(await page.locator("#immunity .hint").count(), hints.length, "hints");
+  for (const [at, hint] of hints.entries()) expect((await page.locator("#immunity .hint").nth(at).innerText()).includes(hint), hint);
 });
 
 await check("text, verdicts and standing filter", async (page) => {
@@ -342,7 +434,7 @@ if (withTimeLine) {
 
 await look("each document has its section, its charts and its command", async (page) => {
   const ids = {"fieldproof/measurement/1": "timing", "fieldproof/emc/1": "immunity", "fieldproof/residual/1": "residual",
-    "fieldproof/publication/2": "publication", "fieldproof/matrix/1": "matrix", "fieldproof/campaign/1": "campaign", "fieldproof/emc_fit/1": "fit", "fieldproof/fuzz/1": "fuzz"};
+    "fieldproof/publication/2": "publication", "fieldproof/matrix/1": "matrix", "fieldproof/campaign/1": "campaign", "fieldproof/emc_fit/1": "fit", "fieldproof/fuzz/1": "fuzz", "fieldproof/detection/1": "detection"};
   for (const schema of sections) {
     const place = page.locator(`section#${ids[schema]}`);
     expectEqual(await place.count(), 1, schema);
@@ -448,6 +540,11 @@ await look("a campaign tells each finding with its command, its decision, and th
     if (content.confidence) expect(text.includes({open: "not decided", below: "below", above: "above"}[content.confidence.decision]), "no decision");
     const cells = new Set(content.rows.filter((row) => row.ledger.sent).map((row) => row.command));
     expectEqual(await place.locator("td.heat").count() > 0, cells.size > 1, "a heat map");
+    for (const corpus of content.search?.corpora ?? []) {
+      expect(text.includes(`Fuzzing together: ${corpus.name}`), "no corpus");
+      const grew = corpus.growth.length > 1 && corpus.growth.some(({ edges }) => edges !== corpus.growth[0].edges);
+      expectEqual(text.includes(`edges after ${corpus.growth[0].run} sequence`), grew, "its growth");
+    }
     for (const row of content.rows.filter(({ ledger }) => ledger.sent)) {
       const share = Number(((100 * row.ledger.detected) / row.ledger.sent).toPrecision(3));
       expect(text.includes(`${share} % rejected`), `no ${share} %`);
@@ -462,6 +559,10 @@ for (const [name, options] of [["a phone", {viewport: {width: 360, height: 740},
     expect((await overflow(page)) <= 0, `${await overflow(page)} px`);
     const cut = await page.evaluate(() => [...document.querySelectorAll("#cover .scroll")].filter((one) => one.scrollWidth > one.clientWidth).length);
     expectEqual(cut, 0, "tables of the cover that are cut");
+    // A matrix has as many columns as there are mutants.
+    const wide = await page.evaluate(() => [...document.querySelectorAll(".scroll:not(:has(> .matrix))")]
+        .filter((one) => one.scrollWidth > one.clientWidth).map((one) => `${one.ariaLabel ?? one.tagName}: ${one.scrollWidth} of ${one.clientWidth} px`));
+    if (name === "a desk") expectEqual(wide.join("; "), "", "what is cut");
   }, options);
 }
 

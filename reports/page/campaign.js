@@ -4,6 +4,7 @@ import { verdictBadge } from "./case_table.js";
 import { grouped } from "./data.js";
 import { command, definitions, element, folded, notice, section } from "./dom.js";
 import { number, part, plural, scientific } from "./format.js";
+import { growthFigure } from "./fuzz.js";
 import { heatMap, shareLines } from "./heat_map.js";
 import { later } from "./later.js";
 import { documentsOf } from "./summary.js";
@@ -112,6 +113,14 @@ function heatMaps(content) {
         heatMap("by level, repetition rate and polarity", all.toSorted((a, b) => a.level.localeCompare(b.level, "en", {numeric: true})))]);
 }
 
+// What searches of one implementation passed together, and what is stored of it.
+function corporaPart({ search }) {
+  return (search?.corpora ?? []).map((one) => [element("h4", {}, `Fuzzing together: ${one.name}`),
+    growthFigure(`How coverage grew in ${plural(one.jobs.length, "job")}`, one.growth, " in each job"),
+    element("p", {}, `${plural(one.sequences, "sequence")} in corpus/${one.name} pass ${plural(one.edges, "edge")} together.`),
+    one.message ? notice(`The corpus was not made smaller: ${one.message}`) : null]);
+}
+
 function campaignPart({ name, content }) {
   const { counts } = content;
   const planned = counts.jobs < counts.planned ? `${number(counts.jobs)} of ${number(counts.planned)} planned` : number(counts.jobs);
@@ -122,7 +131,7 @@ function campaignPart({ name, content }) {
         ["Cases of run", content.cases ? countsText(content.cases.by_verdict) : ""],
         ["Suite", content.suite_version], ["Plan", content.plan_hash]]),
       content.is_complete ? null : notice(element("strong", {}, "This campaign is incomplete"), `: ${content.incomplete_because}. What is not here was not run.`),
-      decisionPart(content), ledgerPart(content), heatMaps(content), jobFindings(content), later(() => element("div", {}, rowsPart(content))));
+      decisionPart(content), ledgerPart(content), heatMaps(content), corporaPart(content), jobFindings(content), later(() => element("div", {}, rowsPart(content))));
 }
 
 export function campaignSection(data) {

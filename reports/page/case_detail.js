@@ -86,12 +86,28 @@ function timeLinePart(more) {
   return null;
 }
 
-// The case step by step: what was done, what must come of it.
-function storyPart(story) {
+// The step in which the case failed, from 0 on; -1: no finding names one of them. A finding may name steps of another
+// list, as those of a sequence, so it has to be the same text.
+function failedStep(steps, findings) {
+  const places = findings.map(({ step }) => steps.indexOf(step)).filter((at) => at >= 0);
+  return places.length > 0 ? Math.min(...places) : -1;
+}
+
+// A case ends with its failure; what comes after was not done.
+function stepOutcome(at, failed) {
+  if (failed < 0) return null;
+  const [sign, words] = at < failed ? ["\u2713", "done"] : at === failed ? ["\u2717", "failed"] : ["\u2013", "not reached"];
+  return element("span", {class: `step-outcome ${at === failed ? "failed" : "quiet"}`}, ` ${sign} ${words}`);
+}
+
+// The case step by step: what was done, what must come of it, and where it failed.
+function storyPart(story, findings) {
   if (!story) return null;
-  return [definitions([["Stimulus", story.stimulus], ["Expected", story.expected]]),
-    story.steps.length ? folded(`Step by step, ${plural(story.steps.length, "step")}`, element("ol", {class: "steps"}, story.steps.map((step) =>
-      element("li", {class: /^[^:]*: expected/.test(step) ? "check" : "stimulus"}, step.replace(/^\d+ of \d+: /, ""))))) : null,
+  const failed = failedStep(story.steps, findings);
+  const list = element("ol", {class: "steps"}, story.steps.map((step, at) =>
+    element("li", {class: /^[^:]*: expected/.test(step) ? "check" : "stimulus"}, step.replace(/^\d+ of \d+: /, ""), stepOutcome(at, failed))));
+  const title = `Step by step, ${plural(story.steps.length, "step")}${failed < 0 ? "" : `, failed in ${failed + 1}`}`;
+  return [definitions([["Stimulus", story.stimulus], ["Expected", story.expected]]), story.steps.length ? folded(title, list) : null,
     story.catches.length ? folded(`Mutants that it catches, ${story.catches.length}`, lines(story.catches, "")) : null];
 }
 
@@ -127,7 +143,7 @@ export function caseDetail(row) {
       [result.verdict === "not-applicable" ? "Why it does not apply" : "Reason", result.reason],
       ["Expected by the baseline", result.expected_because ?? ""],
       ["Plan of faults", plannedHitsText(result.planned_hits, row.run.results.run.plan)]]),
-    storyPart(story),
+    storyPart(story, result.findings),
     result.findings.map((finding, at) => findingPart(finding, result, at, result.findings.length)),
     result.settings ? definitions([["Settings other than usual", lines(result.settings, "")]]) : null,
     timeLinePart(more),

@@ -238,7 +238,7 @@ export function linearCurves(label, xLabel, yLabel, series) {
 }
 
 // The interval of Wilson for a share, which stays within 0 and 1.
-function wilson(count, whole) {
+export function wilson(count, whole) {
   const kZ = 1.96;
   const share = count / whole;
   const middle = (share + (kZ * kZ) / (2 * whole)) / (1 + (kZ * kZ) / whole);
@@ -246,15 +246,15 @@ function wilson(count, whole) {
   return [Math.max(middle - reach, 0), Math.min(middle + reach, 1)];
 }
 
-// Upright bars {x, low, high, colour}, each with a short line at both ends.
-function intervalBars(bars) {
+// Upright bars {x, low, high, colour, shift}, each with a short line at both ends, `shift` pixels beside its place.
+export function intervalBars(bars) {
   return (plot) => {
     const {ctx} = plot;
     const reach = 4 * devicePixelRatio;
     ctx.save();
     ctx.lineWidth = 1.5 * devicePixelRatio;
     for (const bar of bars) {
-      const x = plot.valToPos(bar.x, "x", true);
+      const x = plot.valToPos(bar.x, "x", true) + (bar.shift ?? 0) * devicePixelRatio;
       const ends = [bar.low, bar.high].map((value) => plot.valToPos(value, "y", true));
       ctx.strokeStyle = colour(bar.colour);
       ctx.beginPath();
@@ -305,7 +305,7 @@ export function countedShares(label, series) {
 }
 
 // Grid and labels at powers of ten, at most ten of them.
-const kDecades = {
+export const kDecades = {
   splits: (plot, which, low, high) => {
     const first = Math.ceil(Math.log10(low) - 1e-9);
     const last = Math.floor(Math.log10(high) + 1e-9);

@@ -1,9 +1,11 @@
 // The cover of a page that is handed over: what was tested, with what, and what came out, with limits and
 // margins. It is there when the report was asked for one.
+import { detectionRows } from "./detection.js";
 import { definitions, element, section } from "./dom.js";
 import { duration, fixed, number, part, plural, scientific } from "./format.js";
-import { criteriaPart, exposedText } from "./immunity.js";
+import { criteriaPart, exposedText, longerRun } from "./immunity.js";
 import { mutantsCaught } from "./matrix.js";
+import { burstsOf, disturbedRows } from "./measured_bursts.js";
 import { caveatList, documentsOf, headlineOf, implementationText, partsOf, sentence } from "./summary.js";
 import { table } from "./table.js";
 
@@ -38,7 +40,7 @@ function testedPart({ runs, documents }) {
 function methodText(documents) {
   const has = (schema) => documents.some(({ content }) => content.schema === schema);
   if (!has("fieldproof/emc/1") && !has("fieldproof/measurement/1")) return "";
-  return `simulation: the implementation in a simulated network, in virtual time${has("fieldproof/emc/1")
+  return `simulation: the implementation in a simulated network, in virtual time${has("fieldproof/emc/1") || documents.some(({ content }) => burstsOf(content))
     ? "; bursts are an uncalibrated model of IEC 61000-4-4, no laboratory test" : ""}`;
 }
 
@@ -48,6 +50,7 @@ function benchPart({ runs, documents }) {
   return definitions([
     ["fieldproof", distinct([...identities, ...made].map((one) => one.tool_version)).join(", ")],
     ["Method", methodText(documents)],
+    ["Bursts while measuring", distinct(documents.map(({ content }) => burstsOf(content))).join("; ")],
     ["Date", dates({ runs, documents })],
     ["Host", distinct([...runs.map(({ manifest }) => manifest), ...made].map((one) => one.host)).join(", ")],
     ["Seeds", distinct([...identities, ...documents.map(({ content }) => content)].map((one) => one.seed)).join(", ")],
@@ -131,13 +134,20 @@ function rowsOfMeasurement({ name, content }) {
   };
   const others = ofPaths.filter((one) => !/^(least|largest) delay/.test(one.quantity));
   const open = others.filter(isOpen).map((one) => `${one.quantity}, ${one.series}`);
-  return [...[...worst.values()].map(ofWorst), ...skewRow(name, ofPaths, tolerance),
+  return [...[...worst.values()].map(ofWorst), ...content.series.flatMap((series) => disturbedRows(name, series)), ...skewRow(name, ofPaths, tolerance),
     ...(others.length === 0 ? [] : [{test: `${name}: ${plural(others.length, "comparison")} more of delays, widths, duty cycles and losses${open.length ? `; not: ${open.slice(0, 3).join("; ")}${open.length > 3 ? " and others" : ""}` : ""}`,
       result: agreementsText(others), limit: "as the theory of each", margin: ""}])];
 }
 
 // Of `--worst`.
 const kLimits = {A: "A", B: "B, and no stop", C: "C"};
+
+// What the letter rests on, and what so short a run cannot exclude.
+function groundsOf(test) {
+  const longer = longerRun(test);
+  const grounds = [test.evidence?.text, longer && `with 95 % a longer run could still show ${longer}`].filter(Boolean).join("; ");
+  return grounds && ` (${grounds})`;
+}
 
 function rowsOfBursts({ name, content }) {
   const levels = distinct(content.tests.map((test) => test.level));
@@ -150,7 +160,7 @@ function rowsOfBursts({ name, content }) {
     const beside = references && (references === worst ? "references alone the same" : `references alone ${references}`);
     const gone = tests.filter((test) => test.came_up && test.complaint);
     const wrong = tests.find((test) => test.first_wrong);
-    const said = [worst && `criterion ${worst}`, beside, wrong && `a wrong word ${wrong.first_wrong}`,
+    const said = [worst && `criterion ${worst}${groundsOf(judged.find((test) => test.criterion === worst))}`, beside, wrong && `a wrong word ${wrong.first_wrong}`,
       gone.length > 0 && `${gone[0].decided_by} in ${part(gone.length, tests.length)} tests: ${gone[0].complaint}`,
       stops > 0 && `the bus stopped in ${part(stops, tests.length)} tests`,
       judged.length < tests.length && `the network did not come up in ${part(tests.length - judged.length, tests.length)} tests`];
@@ -194,7 +204,7 @@ function resultRows(data) {
   const of = (schema, rows) => documentsOf(data, schema).flatMap(rows);
   const said = new Map(data.documents.map((document, at) => [document, data.joined.documents[at]]));
   return [...data.runs.flatMap((run, at) => rowsOfRun(run, data.joined.runs[at])), ...of("fieldproof/measurement/1", rowsOfMeasurement),
-    ...of("fieldproof/emc/1", rowsOfBursts), ...of("fieldproof/matrix/1", rowsOfMatrix), ...of("fieldproof/emc_fit/1", rowsOfFit),
+    ...of("fieldproof/emc/1", rowsOfBursts), ...of("fieldproof/matrix/1", rowsOfMatrix), ...of("fieldproof/detection/1", detectionRows), ...of("fieldproof/emc_fit/1", rowsOfFit),
     ...of("fieldproof/campaign/1", (document) => rowsOfCampaign(data, document)),
     ...of("fieldproof/fuzz/1", (document) => [{test: document.name, result: sentence(said.get(document).sentence), limit: "no finding", margin: ""}]),
     ...of("fieldproof/publication/2", (document) => [{test: document.name, result: sentence(said.get(document).sentence), limit: "no row DIFFERS", margin: ""}])];

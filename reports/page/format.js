@@ -70,6 +70,15 @@ export function exactTime(picoseconds) {
   return `${sign}${whole}${rest ? `.${rest}` : ""} us`;
 }
 
+// Times in a text of the program, which writes them to the picosecond: to the nanosecond, but three decimals at least.
+export function roundedTimes(text) {
+  const kDecimals = {s: 9, ms: 6, us: 3, ns: 3};
+  return text.replace(/(\d+\.\d{4,}) (s|ms|us|ns)\b/g, (all, digits, unit) => {
+    const exact = Number(digits).toFixed(kDecimals[unit]);
+    return `${exact.replace(/(\.\d{3}\d*?)0+$/, "$1")} ${unit}`;
+  });
+}
+
 // Nanoseconds are as much as a reader wants; `exactTime` is there on demand.
 export function shownTime(picoseconds) {
   const us = Number(BigInt(picoseconds) / 1000n) / 1000;

@@ -7,33 +7,39 @@ import { number, part, plural } from "./format.js";
 import { implementationText, documentCommand, documentsOf, sentence } from "./summary.js";
 import { table } from "./table.js";
 
-// Points are at 1, 2, 5, 10, 20 ... sequences, so the axis is logarithmic.
+// Points are at 1, 2, 5, 10, 20 ... sequences, so the axis is logarithmic. Searches together do not say what each kept.
 function growthChart(label, growth) {
   const shown = (plot, value) => (value === null ? "" : number(value));
+  const hasKept = growth.every(({kept}) => kept !== undefined);
   const make = () => ({
-    data: [growth.map(({run}) => run), growth.map(({edges}) => edges), growth.map(({kept}) => kept)],
+    data: [growth.map(({run}) => run), growth.map(({edges}) => edges), ...(hasKept ? [growth.map(({kept}) => kept)] : [])],
     options: {
       ...kQuiet,
       scales: {x: {time: false, distr: 3}, y: {range: (plot, low, high) => [0, Math.max(high * 1.05, 1)]}},
-      axes: [axis("sequences", {size: 32, filter: (plot, splits) => splits.map((one) => (Number.isInteger(Math.log10(one)) ? one : null))}), axis("edges, sequences", {size: 60})],
+      axes: [axis("sequences", {size: 32, filter: (plot, splits) => splits.map((one) => (Number.isInteger(Math.log10(one)) ? one : null))}), axis(hasKept ? "edges, sequences" : "edges", {size: 60})],
       series: [{label: "sequences", value: shown},
         {label: "edges", stroke: colour("accent"), width: 1.5, points: {show: true, size: 6}, value: shown},
-        {label: "kept", stroke: colour("second"), width: 1.5, dash: [6, 3], points: {show: true, size: 6}, value: shown}],
+        ...(hasKept ? [{label: "kept", stroke: colour("second"), width: 1.5, dash: [6, 3], points: {show: true, size: 6}, value: shown}] : [])],
     },
   });
   return chartPlace(label, 240, make, 720);
 }
 
 // One point, or edges that are the same from the first on, are no growth to look at.
+export function growthFigure(title, growth, of = "") {
+  if (growth.length < 2 || growth.every(({edges}) => edges === growth[0].edges)) return null;
+  const [first, last] = [growth[0], growth.at(-1)];
+  const said = `${number(first.edges)} edges after ${plural(first.run, "sequence")}${of}, ${number(last.edges)} after ${number(last.run)}`;
+  return chartFigure(title, said, growthChart(`Edges passed, by the number of sequences${of}: ${said}`, growth),
+      [{colour: "accent", text: "edges passed by all sequences together"},
+        ...(first.kept === undefined ? [] : [{colour: "second", dash: 1, text: "sequences kept because they passed an edge as no other before"}])]);
+}
+
 function growthPart({growth, has_coverage: hasCoverage}) {
   if (!hasCoverage) {
     return notice("The implementation reports no coverage, so the search was not guided by it: sequences were drawn as check draws them.");
   }
-  if (growth.length < 2 || growth.every(({edges}) => edges === growth[0].edges)) return null;
-  const [first, last] = [growth[0], growth.at(-1)];
-  const said = `${number(first.edges)} edges after ${plural(first.run, "sequence")}, ${number(last.edges)} after ${number(last.run)}`;
-  return chartFigure("How coverage grew", said, growthChart(`Edges passed, by the number of sequences: ${said}`, growth),
-      [{colour: "accent", text: "edges passed by all sequences together"}, {colour: "second", dash: 1, text: "sequences kept because they passed an edge as no other before"}]);
+  return growthFigure("How coverage grew", growth);
 }
 
 function foundPart({found}) {

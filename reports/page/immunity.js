@@ -1,5 +1,6 @@
 // Networks under bursts: the performance criterion by level, repetition and polarity, and the ledger of errors.
 import { burstCourse } from "./burst_course.js";
+import { burstShares } from "./burst_shares.js";
 import { definitions, element, notice, section } from "./dom.js";
 import { number, part, plural, scientific } from "./format.js";
 import { heatMap, shareLines } from "./heat_map.js";
@@ -43,7 +44,7 @@ function percent(share) {
 }
 
 // Bounds, not chances: a run without a stop has not shown that none can come.
-function longerRun({evidence}) {
+export function longerRun({evidence}) {
   if (!evidence) return "";
   return [["worse_than_a_at_most", "B or worse", "bursts"], ["c_at_most", "C", "bursts"],
     ["d_at_most", "D", "exchanges whose data differ"]]
@@ -175,7 +176,7 @@ function campaign({ name, content }) {
       documentCommand(content, name),
       content.is_complete ? null : notice("The campaign ended before all of its tests were made: what is not here was not tested."),
       thresholdsPart(content),
-      hasBursts ? [heatOf(content.tests), criteriaPart(content), burstCourse(content.tests), besideReferences(content.tests)] : null, sensitivityPart(content), totalPart(content),
+      hasBursts ? [heatOf(content.tests), criteriaPart(content), burstShares(content.tests), burstCourse(content.tests), besideReferences(content.tests)] : null, sensitivityPart(content), totalPart(content),
       content.channels.length ? channels(content.channels) : null, hasBursts ? [balance(content.tests), ledger(content.tests)] : null);
 }
 

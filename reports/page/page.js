@@ -7,6 +7,7 @@ import { comparisonSection } from "./comparison.js";
 import { coverSection } from "./cover.js";
 import { coverageSection } from "./coverage.js";
 import { unpack } from "./data.js";
+import { detectionSection } from "./detection.js";
 import { append, element, replaceContent, visible } from "./dom.js";
 import { fitSection } from "./fit.js";
 import { fuzzSection } from "./fuzz.js";
@@ -20,7 +21,7 @@ import { summarySection } from "./summary.js";
 import { timingSection } from "./timing.js";
 
 const kSections = [coverSection, summarySection, comparisonSection, historySection, campaignSection, caseSection, timingSection, immunitySection, fuzzSection, fitSection, residualSection, publicationSection,
-  matrixSection, coverageSection, appendixSection];
+  matrixSection, detectionSection, coverageSection, appendixSection];
 
 // The same verdict in the title, the headline and the icon of the tab.
 function titleOf({ joined, cover, runs }) {

@@ -110,6 +110,7 @@ const kDocuments = {
   "fieldproof/publication/2": ["publication", "a paper beside its reproduction"],
   "fieldproof/residual/1": ["residual", "undetected errors of a frame check"],
   "fieldproof/matrix/1": ["matrix", "cases and mutants"],
+  "fieldproof/detection/1": ["detection", "random sequences against mutants"],
   "fieldproof/emc_fit/1": ["fit", "counts of a laboratory beside the burst model"],
   "fieldproof/campaign/1": ["campaign", "many jobs of other verbs"],
   "fieldproof/fuzz/1": ["fuzz", "a search for sequences that fail"],

@@ -3,11 +3,13 @@ import { element } from "./dom.js";
 import { number, plural } from "./format.js";
 import { table } from "./table.js";
 
-export function thresholdsPart({thresholds}) {
-  if (!thresholds) return null;
-  return element("p", {class: "thresholds"}, element("strong", {}, "Threshold search: "), thresholds.text,
+// A hint without a search stands alone.
+export function thresholdsPart({thresholds, hint}) {
+  const advice = hint ? element("p", {class: "hint"}, element("strong", {}, "Hint: "), hint) : null;
+  if (!thresholds) return advice;
+  return [element("p", {class: "thresholds"}, element("strong", {}, "Threshold search: "), thresholds.text,
       ` (${plural(thresholds.tests, "test")} of ${number(thresholds.test_s)} s; what a probe does not show may still come)`,
-      thresholds.references ? [element("br"), element("strong", {}, "References alone: "), thresholds.references.text] : null);
+      thresholds.references ? [element("br"), element("strong", {}, "References alone: "), thresholds.references.text] : null), advice];
 }
 
 function valueOf(value, unit) {

@@ -3,7 +3,7 @@
 import { chartFigure, histogram, oscilloscope } from "./charts.js";
 import { courseFigure } from "./course.js";
 import { definitions, element, notice, section } from "./dom.js";
-import { alike, number, part } from "./format.js";
+import { alike, number, part, plural, roundedTimes } from "./format.js";
 import { later } from "./later.js";
 import { documentCommand, documentsOf, madeText } from "./summary.js";
 import { table } from "./table.js";
@@ -19,6 +19,11 @@ function agreementMark(agreement) {
   return element("span", {class: `verdict ${verdict}`, title: kAgreement[agreement]}, agreement);
 }
 
+// What is less than the last decimal shown is an error of the arithmetic, no deviation.
+function withoutNoise(percent) {
+  return Math.abs(percent) < 0.0005 ? 0 : percent;
+}
+
 function comparisons(series) {
   if (series.comparisons.length === 0) return null;
   return table(`${series.name}: theory and measurement`, [
@@ -26,7 +31,7 @@ function comparisons(series) {
     {title: "phase", cell: (one) => one.phase ?? "quiet"},
     {title: "theory", amount: (one) => one.theory, show: (text, one) => `${one.is_bound ? "at most " : ""}${text} ${one.unit}`},
     {title: "measured", amount: (one) => one.measured, show: (text, one) => `${text} ${one.unit}`},
-    {title: "deviation", amount: (one) => one.deviation_percent, show: (text, one) => `${text} % ${one.whole}`},
+    {title: "deviation", amount: (one) => withoutNoise(one.deviation_percent), show: (text, one) => `${text} % ${one.whole}`},
     {title: "standard error", amount: (one) => one.standard_error},
     {title: "agreement", cell: (one) => agreementMark(one.agreement)},
   ], series.comparisons);
@@ -71,11 +76,19 @@ function isBeyond({at}, {histogram: bins}) {
   return at < bins[0].low - margin || at > bins.at(-1).high + margin;
 }
 
+// Of so few a picture of bars says nothing.
+const kFewestValues = 10;
+
 // What never changes needs no picture; the table says it.
 function histograms(series, phases, tolerance) {
-  const worth = phases.filter(({values}) => values.min !== values.max && values.histogram.length > 1);
-  if (worth.length === 0) return null;
-  return element("div", {class: "charts"}, worth.map(({quantity, unit, phase, values}) => {
+  const changing = phases.filter(({values}) => values.min !== values.max && values.histogram.length > 1);
+  const worth = changing.filter(({values}) => values.count >= kFewestValues);
+  const few = changing.filter(({values}) => values.count < kFewestValues)
+      .map(({quantity, phase, values}) => `${quantity}, ${phase} (${plural(values.count, "value")})`);
+  const sentence = few.length === 0 ? null
+      : element("p", {class: "quiet few-values"}, `No histogram of fewer than ${kFewestValues} values: ${few.join("; ")}. The table has them.`);
+  if (worth.length === 0) return sentence;
+  return [sentence, element("div", {class: "charts"}, worth.map(({quantity, unit, phase, values}) => {
     const title = `${quantity}, ${phase}`;
     const text = alike([values.min, values.max, values.mean, values.p99]);
     const range = `${text(values.min)} to ${text(values.max)} ${unit}, mean ${text(values.mean)}, p99 ${text(values.p99)}`;
@@ -83,7 +96,7 @@ function histograms(series, phases, tolerance) {
     return chartFigure(title, `${number(values.count)} values, ${range}`, histogram(`Histogram of ${title}: ${range}`, unit, values.histogram, marks),
         [{colour: "accent", text: "count"}, {colour: "third", text: "share up to here, %"},
           ...marks.map((mark, at) => ({colour: "second", dash: at, text: `${mark.name} ${text(mark.at)} ${unit}${isBeyond(mark, values) ? ", beyond the chart" : ""}`}))]);
-  }));
+  }))];
 }
 
 function counts(series) {
@@ -103,12 +116,17 @@ function seriesPart(series, tolerance) {
       phases.length ? [distributions(series, phases), histograms(series, phases, tolerance)] : null, counts(series));
 }
 
+// Caveats are told once, at the head of the page; documents of earlier programs have them here.
+function isNoCaveat({ name }) {
+  return name !== "unverified";
+}
+
 function measurementPart({ name, content }) {
   return element("article", {},
       element("h3", {}, `${content.network} `, agreementMark(content.agreement)),
       (content.failures ?? []).map((failure) => element("p", {}, element("span", {class: "verdict fail"}, "fail"), ` ${failure}`)),
       definitions([["Document", name], ["Protocol", content.protocol], ["Seed", content.seed],
-        ["Tolerance", `${number(content.tolerance_percent)} %`], ["Implementation", content.implementations], ["Made", madeText(content)], ...content.conditions.map((one) => [one.name, one.value])]),
+        ["Tolerance", `${number(content.tolerance_percent)} %`], ["Implementation", content.implementations], ["Made", madeText(content)], ...content.conditions.filter(isNoCaveat).map((one) => [one.name, roundedTimes(one.value)])]),
       content.implementations && content.agreement !== "holds" ? notice("The closed forms are those of the reference stations. Others may be faster or slower within what the standard allows, so a difference is no failure here, and a row that is open may be one; 'fieldproof run' judges each station.") : null,
       documentCommand(content, name), content.series.map((series) => later(() => seriesPart(series, content.tolerance_percent))));
 }
