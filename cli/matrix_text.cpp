@@ -24,9 +24,9 @@ char sign_of(const Cell& cell) {
   return kSigns.at(static_cast<std::size_t>(cell.kind));
 }
 
-// On the reference a pass is what is wanted; anything that is not quiet is a false alarm.
+// On the reference a pass is what is wanted, or a warn; anything that is not quiet is a false alarm.
 char reference_sign(const Cell& cell) {
-  if (cell.verdict == judge::Verdict::pass) return '.';
+  if (cell.verdict == judge::Verdict::pass || cell.verdict == judge::Verdict::warn) return '.';
   return cell.kind == conformance::CellKind::not_applicable || cell.kind == conformance::CellKind::not_run
              ? sign_of(cell)
              : 'X';

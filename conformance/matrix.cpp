@@ -121,7 +121,9 @@ void find_cell_holes(const TestCase& test_case, const Mutant& mutant, const Cell
 void find_row_holes(const RoleMatrix& matrix, std::size_t row, std::vector<Hole>& holes) {
   const TestCase& test_case = *matrix.cases[row];
   const Cell& reference = matrix.reference[row];
-  const bool is_quiet = reference.verdict == Verdict::pass || reference.kind == CellKind::not_applicable;
+  // A warn accuses nobody: it says what of the protocol users should know.
+  const bool is_quiet = reference.verdict == Verdict::pass || reference.verdict == Verdict::warn ||
+                        reference.kind == CellKind::not_applicable;
   if (!is_quiet && reference.kind != CellKind::not_run) {
     holes.push_back({HoleKind::false_alarm, test_case.id, "",
                      fmt::format("{} on the reference {}", test_case.id, told(reference))});

@@ -46,7 +46,7 @@ enum class HoleKind : std::uint8_t {
   idle_case,    // catches nothing
   missed,       // a declared catch does not happen
   wrong_cause,  // a declared catch happens for another reason, or the case ends in an error
-  false_alarm,  // the reference does not pass
+  false_alarm,  // the reference neither passes nor warns
 };
 
 std::string_view name(HoleKind kind);

@@ -144,8 +144,15 @@ TEST_F(MatrixOfARing, ErrorOfTheBenchIsAWrongCauseEvenUndeclared) {
 TEST_F(MatrixOfARing, FalseAlarmOnTheReferenceIsAHole) {
   add_good_cases();
   suite_.add(declaring("nervous", {{"late", "y"}}),
-             answering({{"mutant:late", {Verdict::fail, "y"}}, {"ref", {Verdict::warn, "y"}}}));
+             answering({{"mutant:late", {Verdict::fail, "y"}}, {"ref", {Verdict::inconclusive, "y"}}}));
   EXPECT_EQ(holes(), Strings{"false-alarm ring/slave/nervous "});
+}
+
+TEST_F(MatrixOfARing, AWarnOnTheReferenceIsNone) {
+  add_good_cases();
+  suite_.add(declaring("tells", {{"late", "y"}}),
+             answering({{"mutant:late", {Verdict::fail, "y"}}, {"ref", {Verdict::warn, "weak"}}}));
+  EXPECT_EQ(holes(), Strings{});
 }
 
 TEST_F(MatrixOfARing, DeclaredReasonMayBeAnyFailingFinding) {

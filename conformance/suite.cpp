@@ -123,8 +123,10 @@ judge::CaseResult Suite::run_derived(const RoleRow& row, DerivedKind kind, Runni
       run.is_on_real_line()
           ? kDerivedOnRealLine
           : run.setup().sequences.value_or(derived_count(kind, run.setup().volume, sequences.role.cost));
+  const bool has_time = run.setup().volume == Volume::full && !run.is_on_real_line();
   const DerivedSequences derived =
-      derived_sequences(kind, vocabulary, most, kernel::Random(run.setup().seed).split("derived"));
+      derived_sequences(kind, vocabulary, most, kernel::Random(run.setup().seed).split("derived"),
+                        has_time ? kMostRepetitions : kManyRepetitions);
   return run_derived_case({.test_case = run.test_case(),
                            .derived = derived,
                            .vocabulary = vocabulary,

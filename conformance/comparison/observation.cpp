@@ -71,8 +71,9 @@ std::vector<std::int64_t> LevelHistory::within(kernel::Time from, kernel::Time t
   return values;
 }
 
-void compare_levels(const LevelKind& kind, const LevelHistory& iut, std::span<const LevelHistory> extremes,
-                    kernel::Time from, kernel::Time to, CaseJudge& judge) {
+std::optional<LevelMismatch> first_mismatch(const LevelKind& kind, const LevelHistory& iut,
+                                            std::span<const LevelHistory> extremes, kernel::Time from,
+                                            kernel::Time to) {
   const auto is_judged = [&](kernel::Time when) { return when > from && when <= to; };
   // Where it changes, and where what an extreme has changed must have been taken.
   std::map<kernel::Time, bool> instants{{to, false}};
@@ -91,11 +92,18 @@ void compare_levels(const LevelKind& kind, const LevelHistory& iut, std::span<co
     const auto allowed = admissible(extremes, when - kind.later, when + kind.earlier);
     const std::int64_t value = iut.at(when);
     if (allowed.contains(value)) continue;
-    std::string expected;
-    for (const std::int64_t one : allowed) expected += (expected.empty() ? "" : " or ") + kind.text(one);
-    const std::string_view changed = allowed.size() > 1 ? kind.different : kind.unasked;
-    judge.fail(is_change ? changed : kind.not_taken, {{expected}, kind.text(value), when});
+    return LevelMismatch{when, value, {allowed.begin(), allowed.end()}, is_change};
   }
+  return std::nullopt;
+}
+
+void fail_level(const LevelKind& kind, const LevelMismatch& mismatch, CaseJudge& judge) {
+  std::string expected;
+  for (const std::int64_t one : mismatch.allowed)
+    expected += (expected.empty() ? "" : " or ") + kind.text(one);
+  const std::string_view changed = mismatch.allowed.size() > 1 ? kind.different : kind.unasked;
+  judge.fail(mismatch.is_change ? changed : kind.not_taken,
+             {{expected}, kind.text(mismatch.value), mismatch.when});
 }
 
 }  // namespace fieldproof::conformance

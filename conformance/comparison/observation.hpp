@@ -74,8 +74,18 @@ struct LevelKind {
   std::string (*text)(std::int64_t value);
 };
 
-// Judges the instants in (from, to]. The extremes must be known until `to` + `earlier`.
-void compare_levels(const LevelKind& kind, const LevelHistory& iut, std::span<const LevelHistory> extremes,
-                    kernel::Time from, kernel::Time to, CaseJudge& judge);
+// Where one is none of those that are admissible.
+struct LevelMismatch {
+  kernel::Time when{};
+  std::int64_t value = 0;
+  std::vector<std::int64_t> allowed;
+  bool is_change = false;  // it changes to this one then; else it stays
+};
+
+// The first one in (from, to]. The extremes must be known until `to` + `earlier`.
+std::optional<LevelMismatch> first_mismatch(const LevelKind& kind, const LevelHistory& iut,
+                                            std::span<const LevelHistory> extremes, kernel::Time from,
+                                            kernel::Time to);
+[[noreturn]] void fail_level(const LevelKind& kind, const LevelMismatch& mismatch, CaseJudge& judge);
 
 }  // namespace fieldproof::conformance

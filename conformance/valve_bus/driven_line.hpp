@@ -3,12 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "harness/line/character.hpp"
 #include "harness/line/waveform.hpp"
 #include "harness/segment/station.hpp"
+#include "protocols/valve_bus/rules.hpp"
 
 // The lower tester's ear for what one station drives on an RS-485 line: transmissions from the instant at
 // which its driver comes on to that at which it goes off, with the characters in them. It decodes with the
@@ -33,6 +35,11 @@ struct Transmission {
   // The longest silence between two characters; zero with fewer.
   kernel::Duration longest_gap() const;
 };
+
+// "05 00 FF 00 FA, write FF 00 to node 5"; "05! 00", "no character".
+std::string characters_text(const Transmission& transmission, const valve_bus::Rules& rules);
+// The same of octets: a command or a response whose check fits is said in words, others are not.
+std::string octets_in_words(std::span<const std::uint8_t> octets, const valve_bus::Rules& rules);
 
 class DrivenLine final : public segment::Tap {
  public:

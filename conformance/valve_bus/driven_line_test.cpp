@@ -33,5 +33,18 @@ TEST(DrivenLine, IdleThatEndsALittleBeforeTheStartBitIsTheSameTransmission) {
   }
 }
 
+TEST(DrivenLine, AFrameWhoseCheckFitsIsSaidInWords) {
+  const valve_bus::Rules rules;
+  using Octets = std::vector<std::uint8_t>;
+  EXPECT_EQ(octets_in_words(Octets{0x22, 0x01, 0x00, 0x00, 0x23}, rules), "22 01 00 00 23, read of node 34");
+  EXPECT_EQ(octets_in_words(Octets{0x01, 0x00, 0x45, 0x5D, 0x19}, rules),
+            "01 00 45 5D 19, write 45 5D to node 1");
+  EXPECT_EQ(octets_in_words(Octets{0x01, 0x07, 0x45, 0x5D, 0x1E}, rules),
+            "01 07 45 5D 1E, command 7 with 45 5D to node 1");
+  EXPECT_EQ(octets_in_words(Octets{0x45, 0x5D, 0x18}, rules), "45 5D 18, response 45 5D");
+  EXPECT_EQ(octets_in_words(Octets{0x01, 0x00, 0x45, 0x5D, 0x18}, rules), "01 00 45 5D 18");
+  EXPECT_EQ(characters_text({}, rules), "no character");
+}
+
 }  // namespace
 }  // namespace fieldproof::conformance

@@ -18,6 +18,7 @@ using valve_bus::HostConfiguration;
 
 constexpr kernel::Duration kHostWarmUp = 20 * kernel::kMillisecond;
 constexpr std::size_t kHistoryLines = 24;
+constexpr std::string_view kNodeDrove = "node drove";
 
 std::unique_ptr<valve_bus::HostDevice> host_made(const HostSetting& setting,
                                                  const HostConfiguration& configuration) {
@@ -25,13 +26,9 @@ std::unique_ptr<valve_bus::HostDevice> host_made(const HostSetting& setting,
   return std::make_unique<valve_bus::Host>(configuration);
 }
 
-std::string frame_text(const HostFrame& frame) {
-  std::string text = fmt::format("host, driver on {} to {}:", kernel::describe(frame.sent.driver_on),
-                                 kernel::describe(frame.sent.driver_off));
-  for (const DrivenCharacter& character : frame.sent.characters) {
-    text += fmt::format(" {:02X}{}", character.octet(), character.is_good ? "" : "!");
-  }
-  return text;
+std::string frame_text(const HostFrame& frame, const valve_bus::Rules& rules) {
+  return fmt::format("host, driver on {} to {}: {}", kernel::describe(frame.sent.driver_on),
+                     kernel::describe(frame.sent.driver_off), characters_text(frame.sent, rules));
 }
 
 // Of a character at the highest rate of the switches, and of a command at the lowest, with a delimiter on
@@ -281,7 +278,7 @@ kernel::Duration HostBench::late_turnaround_time() {
 kernel::Time HostBench::answer(std::span<const std::uint8_t> octets, kernel::Duration turnaround_time) {
   const kernel::Time start = std::max(now(), last_end_ + turnaround_time);
   const kernel::Time end = codec_.drive(tester(), octets, start, {});
-  note(Deed{start, "node drove", {octets.begin(), octets.end()}});
+  note(Deed{start, kNodeDrove, {octets.begin(), octets.end()}});
   said_.push_back({start, end});
   return end;
 }
@@ -292,14 +289,14 @@ void HostBench::answer_levels(const line::Levels& levels, kernel::Duration turna
   wave.rate = rules().bit_rate;
   wave.levels = levels;
   said_.push_back({wave.start, wave.end()});
-  note(Deed{wave.start, "node drove", {}, levels.size()});
+  note(Deed{wave.start, kNodeDrove, {}, levels.size()});
   tester().drive(wave);
 }
 
 kernel::Time HostBench::say(std::span<const std::uint8_t> octets) {
   const kernel::Time end = codec_.drive(tester(), octets, now(), {});
   said_.push_back({now(), end});
-  note(Deed{now(), "node drove", {octets.begin(), octets.end()}});
+  note(Deed{now(), kNodeDrove, {octets.begin(), octets.end()}});
   segment().run_until(end);
   return end;
 }
@@ -346,17 +343,19 @@ kernel::Time HostBench::time_of(const Seen& seen) {
   return std::get<Deed>(seen).when;
 }
 
-std::string HostBench::line_of(const Seen& seen) {
-  if (const auto* frame = std::get_if<HostFrame>(&seen)) return frame_text(*frame);
+std::string HostBench::line_of(const Seen& seen) const {
+  if (const auto* frame = std::get_if<HostFrame>(&seen)) return frame_text(*frame, rules());
   if (const auto* event = std::get_if<HostEvent>(&seen)) return "PC was told: " + text_of(*event);
   constexpr std::size_t kMostOctets = 12;
   const Deed& deed = std::get<Deed>(seen);
   if (deed.octets.empty() && deed.levels == 0)
     return fmt::format("{} at {}", deed.what, kernel::describe(deed.when));
   const auto first = std::span(deed.octets).first(std::min(deed.octets.size(), kMostOctets));
-  const std::string what = deed.levels > 0 ? fmt::format("{} levels", deed.levels)
-                                           : fmt::format("{:02X}{}", fmt::join(first, " "),
-                                                         first.size() < deed.octets.size() ? " ..." : "");
+  const char* more = first.size() < deed.octets.size() ? " ..." : "";
+  // What the PC writes is no frame of the bus.
+  const std::string octets = deed.what == kNodeDrove ? octets_in_words(first, rules())
+                                                     : fmt::format("{:02X}", fmt::join(first, " "));
+  const std::string what = deed.levels > 0 ? fmt::format("{} levels", deed.levels) : octets + more;
   return fmt::format("{} {}, at {}", deed.what, what, kernel::describe(deed.when));
 }
 

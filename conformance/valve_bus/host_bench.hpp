@@ -178,7 +178,7 @@ class HostBench final : public LineBench, private valve_bus::HostApplication {
   };
   using Seen = std::variant<HostFrame, HostEvent, Deed>;
   static kernel::Time time_of(const Seen& seen);
-  static std::string line_of(const Seen& seen);
+  std::string line_of(const Seen& seen) const;
 
   void on_response(const valve_bus::HostResponse& response, kernel::Time when) override;
   void on_error(const valve_bus::HostError& error, kernel::Time when) override;

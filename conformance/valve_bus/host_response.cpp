@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "conformance/valve_bus/bit_pairs.hpp"
+#include "conformance/valve_bus/blind_check.hpp"
 #include "conformance/valve_bus/host_scene.hpp"
 
 // What is a response, and what the PC is told of it.
@@ -32,6 +33,15 @@ Octets wrong_bit(HostScene& scene) {
 constexpr std::array<std::uint8_t, 3> kEqual{0x00, 0x55, 0xFF};
 constexpr unsigned kColumnPairs = 24;
 constexpr unsigned kOtherPairs = 252;
+constexpr Rounds kPairRounds{kEqual.size() + kColumnPairs + kOtherPairs / 6,
+                             kEqual.size() + kColumnPairs + kOtherPairs};
+
+// Behind the last round: that the host reported each of them, its round has shown.
+void warn_of_reported_pairs(HostScene& scene) {
+  if (scene.round + 1 != scene.bench.volume(kPairRounds.quick, kPairRounds.full)) return;
+  warn_of_blind_check(scene.judge, kColumnPairs, kColumnPairs,
+                      "responses with two wrong bits in a column were reported");
+}
 
 // The exclusive or cannot see two wrong bits in one column. A host that refuses such a response has another
 // check; one that takes any other double error has none.
@@ -142,7 +152,7 @@ std::vector<HostCase> cases_of_octets() {
                 .catches = {{"id_in_response_check", "right_check_refused"},
                             {"response_check_too_strict", "right_check_refused"},
                             {"response_check_is_parity", "wrong_response_told"}}},
-               {{kEqual.size() + kColumnPairs + kOtherPairs / 6, kEqual.size() + kColumnPairs + kOtherPairs},
+               {kPairRounds,
                 {read(),
                  answer("the node answers with two equal octets, then with two wrong bits: all 24 pairs in "
                         "one column, and the 252 others",
@@ -150,7 +160,8 @@ std::vector<HostCase> cases_of_octets() {
                  taken_if(
                      "of equal octets and of one column",
                      [](const HostScene& scene) { return scene.round < kEqual.size() + kColumnPairs; },
-                     "right_check_refused", "wrong_response_told", "its check does not fit")}}),
+                     "right_check_refused", "wrong_response_told", "its check does not fit"),
+                 stimulus("", warn_of_reported_pairs)}}),
       on_chart({.id = "valve_bus/host/response/early_response_is_refused",
                 .purpose = "RH-10",
                 .requirement = "What begins within 10 bits of the request belongs to its frame and is no "

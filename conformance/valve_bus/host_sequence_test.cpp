@@ -63,6 +63,20 @@ TEST(HostSequence, AnOctetIntoTheDriverAccusesNobody) {
   EXPECT_EQ(result.verdict, judge::Verdict::pass) << result.reason;
 }
 
+// What the block check does not see is said of the bus, and of nobody who is judged.
+TEST(HostBench, WhatTheCheckDoesNotSeeIsAWarn) {
+  for (const HostCase& one : host_cases()) {
+    if (one.test_case.id != "valve_bus/host/response/two_wrong_bits_of_a_column_are_taken") continue;
+    HostSetting setting;
+    setting.volume = Volume::quick;
+    const judge::CaseResult result = run_on_bench(one, setting);
+    EXPECT_EQ(result.verdict, judge::Verdict::warn);
+    EXPECT_EQ(result.reason, "check_does_not_see_it");
+    ASSERT_EQ(result.findings.size(), 1U);
+    EXPECT_TRUE(result.findings.front().actual.starts_with("24 of 24 responses"));
+  }
+}
+
 // A character is known when it is over: what a host sends within its first one breaks no silence.
 TEST(HostBench, ACharacterThatIsNotOverAccusesNobody) {
   const HostCase one{host_sequence_role().test_case, [](HostBench& bench, CaseJudge& judge) {

@@ -14,16 +14,9 @@ namespace {
 
 using valve_bus::NodeConfiguration;
 
-constexpr std::size_t kSentWaves = 30;  // five or six frames
+constexpr std::size_t kSentWaves = 30;          // five or six frames
+constexpr std::string_view kValves = "valves";  // that they moved, as an observation
 constexpr kernel::Duration kWarmUp = 20 * kernel::kMillisecond;
-
-std::string characters_text(const Transmission& transmission) {
-  std::string text;
-  for (const DrivenCharacter& character : transmission.characters) {
-    text += fmt::format(" {:02X}{}", character.octet(), character.is_good ? "" : "!");
-  }
-  return text.empty() ? " no character" : text;
-}
 
 std::unique_ptr<valve_bus::NodeDevice> made(const NodeSetting& setting,
                                             const NodeConfiguration& configuration) {
@@ -39,11 +32,15 @@ LineWatch watch_of(const valve_bus::Rules& rules) {
   return LineWatch(valve_bus::bits(rules, 1), delimiter(rules) + turnaround_time_span(rules) + answer);
 }
 
-// The cases speak to the ID that the node has.
-void expect_an_id(const valve_bus::NodeConfiguration& node) {
+bool has_an_id(const valve_bus::NodeConfiguration& node) {
   constexpr unsigned kDigits = 10;
   const bool are_digits = node.address_tens < kDigits && node.address_units < kDigits;
-  if (are_digits && node.address_tens + node.address_units > 0) return;
+  return are_digits && node.address_tens + node.address_units > 0;
+}
+
+// The cases speak to the ID that the node has.
+void expect_an_id(const valve_bus::NodeConfiguration& node) {
+  if (has_an_id(node)) return;
   throw kernel::Error(
       kernel::ErrorKind::configuration,
       fmt::format("address switches at {} and {} give no ID, so nothing can be sent to this node; "
@@ -114,9 +111,10 @@ NodeBench::NodeBench(const NodeNeeds& needs, const NodeSetting& setting, judge::
   watch(place());
   const trace::Channel valves = segment().trace().add_channel("node/valves");
   boards_.on_change([this, valves](const segment::ProcessWords::Change& change) {
-    segment().trace().observe(valves, change.when, "valves", change.after);
+    segment().trace().observe(valves, change.when, kValves, change.after);
+    ledger_.add_move({change.when, change.before, change.after});
   });
-  install(setting.plan, rules().bit_rate);
+  install(setting.plan, rules().bit_rate, {std::string(kValves)});
   // A response begins within the span and takes three characters; a bit of slack shows one that is late.
   settling_ = delimiter() + std::max(turnaround_time_span(rules()), actuation_limit(rules())) +
               characters(8) + 2 * distance_ + 500 * kernel::kMicrosecond;
@@ -165,6 +163,8 @@ std::uint16_t NodeBench::valves_of(std::uint8_t data0, std::uint8_t data1) const
 void NodeBench::set_power(bool is_on) {
   node_->set_power(is_on, now());
   supply_.add_supply(now(), is_on);
+  keep_writes();
+  ledger_.forget_writes();
   // Without supply no solenoid is held, whatever the node had driven.
   if (!is_on) boards_.drive_valves(0, now());
   refresh_iut();
@@ -232,7 +232,22 @@ void NodeBench::wait_after_write() {
   wait(delimiter() + kernel::kMicrosecond);
 }
 
+void NodeBench::keep_writes() {
+  if (!has_an_id(configuration_)) return;  // no write is its own
+  for (const ArrivedFrame& frame : arrived_.frames()) {
+    const bool is_own_write =
+        frame.is_command() && frame.octets[0] == address() && frame.octets[1] == rules().write_command;
+    if (is_own_write) ledger_.add_write({frame.end, valves_of(frame.octets[2], frame.octets[3])});
+  }
+}
+
+const ValveLedger& NodeBench::ledger() {
+  keep_writes();
+  return ledger_;
+}
+
 void NodeBench::clear_observations() {
+  keep_writes();
   driven_.clear();
   arrived_.clear();
   boards_.forget_changes();
@@ -242,16 +257,22 @@ std::vector<std::string> NodeBench::decode_lines() {
   DecodedLines happened;
   const auto tell = [&](std::string_view who, const std::vector<Transmission>& all) {
     for (const Transmission& one : all) {
-      happened.add(one.driver_on, fmt::format("{} {} to {}:{}", who, kernel::describe(one.driver_on),
-                                              kernel::describe(one.driver_off), characters_text(one)));
+      happened.add(one.driver_on,
+                   fmt::format("{} {} to {}: {}", who, kernel::describe(one.driver_on),
+                               kernel::describe(one.driver_off), characters_text(one, rules())));
     }
   };
   tell("tester drove", sent_.transmissions());
   tell("node drove", answers());
   happened.add(supply_);
+  for (const ValveMove& move : ledger_.moves()) {
+    happened.add(move.when, fmt::format("valves {:02X} {:02X} from {} on", move.after & 0xFF, move.after >> 8,
+                                        kernel::describe(move.when)));
+  }
   std::vector<std::string> lines = happened.last();
-  const std::uint16_t valves = boards_.valves();
-  lines.push_back(fmt::format("valves {:02X} {:02X}", valves & 0xFF, valves >> 8));
+  const std::uint16_t valves = this->valves();
+  lines.push_back(
+      fmt::format("valves {:02X} {:02X} at {}", valves & 0xFF, valves >> 8, kernel::describe(now())));
   return lines;
 }
 

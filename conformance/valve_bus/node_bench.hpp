@@ -15,6 +15,7 @@
 #include "conformance/valve_bus/arrived_frames.hpp"
 #include "conformance/valve_bus/declarations.hpp"
 #include "conformance/valve_bus/driven_line.hpp"
+#include "conformance/valve_bus/valve_ledger.hpp"
 #include "harness/judge/pics.hpp"
 #include "protocols/valve_bus/codec.hpp"
 #include "protocols/valve_bus/device.hpp"
@@ -81,6 +82,8 @@ class NodeBench final : public LineBench {
   // ---- upper tester ----
   valve_bus::ValveBlock& boards() { return boards_; }
   std::uint16_t valves() { return boards_.output_at(0, now()); }
+  // What the valves were told and what they did, up to now.
+  const ValveLedger& ledger();
   // The valves that DATA0 and DATA1 drive at this node.
   std::uint16_t valves_of(std::uint8_t data0, std::uint8_t data1) const;
   void set_power(bool is_on);
@@ -140,11 +143,12 @@ class NodeBench final : public LineBench {
 
   // The case is over. What the IUT does then is still its verdict.
   void finish() { node_->end(); }
-  // The last transmissions of the tester and of the IUT, in words.
+  // The last transmissions of the tester and of the IUT and the last moves of the valves, in words.
   std::vector<std::string> decode_lines();
 
  private:
   NodeBench(const NodeNeeds& needs, const NodeSetting& setting, judge::Pics pics);
+  void keep_writes();
 
   judge::Pics pics_;
   valve_bus::NodeConfiguration configuration_;
@@ -152,6 +156,7 @@ class NodeBench final : public LineBench {
   kernel::Duration distance_;
   valve_bus::CharacterCodec codec_;
   valve_bus::ValveBlock boards_;
+  ValveLedger ledger_;
   std::unique_ptr<valve_bus::NodeDevice> node_;
   DrivenLine driven_;
   DrivenLine sent_;  // by the tester; the last of it

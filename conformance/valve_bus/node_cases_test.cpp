@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -88,7 +89,7 @@ class DeclaredNodes : public testing::TestWithParam<DeclaredNode> {
       setting.make_device = &make<Node>;
       for (setting.seed = 1; setting.seed <= seeds; ++setting.seed) {
         const judge::CaseResult result = run_on_bench(one, setting);
-        EXPECT_EQ(result.verdict, judge::Verdict::pass)
+        EXPECT_TRUE(result.verdict == judge::Verdict::pass || result.verdict == judge::Verdict::warn)
             << result.id << " seed " << setting.seed << ": " << result.reason
             << (result.findings.empty() ? "" : ", " + result.findings.front().actual);
       }
@@ -188,7 +189,7 @@ void expect_no_accusation_without() {
     setting.volume = Volume::quick;
     setting.make_device = &make<NodeWithout<kWhat>>;
     const judge::CaseResult result = run_on_bench(one, setting);
-    EXPECT_LT(result.verdict, judge::Verdict::warn) << result.id << ": " << result.reason;
+    EXPECT_LE(result.verdict, judge::Verdict::warn) << result.id << ": " << result.reason;
   }
 }
 
@@ -220,7 +221,7 @@ TEST(NodeValves, TwoPortsWithinTheSkewAreOneMove) {
     setting.volume = Volume::quick;
     setting.make_device = &make<TwoPorts>;
     const judge::CaseResult result = run_on_bench(one, setting);
-    EXPECT_LT(result.verdict, judge::Verdict::warn) << result.id << ": " << result.reason;
+    EXPECT_LE(result.verdict, judge::Verdict::warn) << result.id << ": " << result.reason;
   }
 }
 
@@ -254,7 +255,84 @@ TEST(NodeValves, AreTooLateHoweverLate) {
     const judge::CaseResult result = run_on_bench(case_of("valve_bus/node/write/drives_the_valves"), setting);
     EXPECT_EQ(result.reason, "valves_too_late") << microseconds;
     ASSERT_FALSE(result.findings.empty());
-    EXPECT_THAT(result.findings.front().actual, testing::HasSubstr("after it, to"));
+    EXPECT_THAT(result.findings.front().actual, testing::HasSubstr("after the last stop bit, to"));
+    EXPECT_THAT(result.findings.front().decode,
+                testing::Contains(testing::ContainsRegex("valves [0-9A-F ]+ from [0-9.]+ ms on")));
+  }
+}
+
+// Each move so much later than it is told to, in its turn; announced at once, or made when it is due.
+class MovesLateInTurn : public valve_bus::Node {
+ public:
+  MovesLateInTurn(const valve_bus::NodeConfiguration& configuration, kernel::Duration later, bool announces)
+      : Node(configuration), later_(later), announces_(announces) {}
+
+ protected:
+  void actuate(std::uint16_t valves, kernel::Time now) override {
+    if (announces_) return Node::actuate(valves, now + later_);
+    moves_.emplace_back(valves, now + later_);
+  }
+
+ private:
+  kernel::Time next_time() const override {
+    return moves_.empty() ? Node::next_time() : std::min(Node::next_time(), moves_.front().second);
+  }
+  void on_time(kernel::Time now) override {
+    for (; !moves_.empty() && moves_.front().second <= now; moves_.pop_front())
+      Node::actuate(moves_.front().first, now);
+    Node::on_time(now);
+  }
+  void on_power_up(kernel::Time now) override {
+    moves_.clear();
+    Node::on_power_up(now);
+  }
+  kernel::Duration later_;
+  bool announces_;
+  std::deque<std::pair<std::uint16_t, kernel::Time>> moves_;
+};
+
+// A wrong instant is no wrong value, whatever a case is about.
+TEST(NodeValves, AreTooLateInWhateverCaseSeesThem) {
+  for (const bool announces : {false, true}) {
+    for (const std::int64_t milliseconds : {3, 20, 200}) {
+      unsigned late = 0;
+      std::vector<std::string> others;
+      for (const NodeCase& one : node_cases()) {
+        if (is_canary(one.test_case) || has_tag(one.test_case, kStressTag)) continue;
+        NodeSetting setting;
+        setting.volume = Volume::quick;
+        setting.make_device = [&](const valve_bus::NodeConfiguration& configuration) {
+          return std::make_unique<MovesLateInTurn>(configuration, milliseconds * kernel::kMillisecond,
+                                                   announces);
+        };
+        const judge::CaseResult result = run_on_bench(one, setting);
+        if (result.verdict != judge::Verdict::fail) continue;
+        if (result.reason == "valves_too_late")
+          ++late;
+        else
+          others.push_back(result.id + " " + result.reason);
+      }
+      EXPECT_GT(late, 40U) << milliseconds;
+      EXPECT_LE(others.size(), 3U) << milliseconds << announces << testing::PrintToString(others);
+    }
+  }
+}
+
+// What the block check does not see is said of the bus, and of nobody who is judged.
+TEST(NodeImmunity, WhatTheCheckDoesNotSeeIsAWarn) {
+  for (const auto& [name, counts] :
+       {std::pair("check/double_errors_show_the_exclusive_or", "27 of 80 commands"),
+        std::pair("immunity/pulses_in_step_with_eleven_bits_pass_the_check",
+                  " hit writes in step were taken"),
+        std::pair("immunity/pulses_in_step_with_ten_bits_pass_the_check",
+                  " hit writes in step were taken")}) {
+    NodeSetting setting;
+    setting.volume = Volume::quick;
+    const judge::CaseResult result = run_on_bench(case_of(std::string("valve_bus/node/") + name), setting);
+    EXPECT_EQ(result.verdict, judge::Verdict::warn) << name;
+    EXPECT_EQ(result.reason, "check_does_not_see_it") << name;
+    ASSERT_EQ(result.findings.size(), 1U) << name;
+    EXPECT_THAT(result.findings.front().actual, testing::HasSubstr(counts)) << name;
   }
 }
 

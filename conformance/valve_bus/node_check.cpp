@@ -3,6 +3,8 @@
 #include <utility>
 
 #include "conformance/valve_bus/bit_pairs.hpp"
+#include "conformance/valve_bus/blind_check.hpp"
+#include "conformance/valve_bus/node_lateness.hpp"
 #include "conformance/valve_bus/node_scene.hpp"
 
 // The block check: what it must refuse, and what it cannot see. Faults are written into the octets of whole
@@ -34,14 +36,36 @@ void send_many_wrong_frames(NodeScene& scene) {
 constexpr unsigned kFrameColumnPairs = 80;
 constexpr unsigned kFrameOtherPairs = 700;
 
+constexpr Rounds kPairRounds{kFrameColumnPairs + kFrameOtherPairs / 7, kFrameColumnPairs + kFrameOtherPairs};
+
 // A wrong DATA octet must move a valve: both differ from what stands in every bit.
-Frame two_wrong_bits(NodeScene& scene) {
+Frame with_wrong_pair(NodeScene& scene, unsigned number) {
   static const auto pairs = bit_pairs(valve_bus::kCommandOctets);
-  scene.bench.require(&iut::Capabilities::process_side);
   Frame frame = scene.write(0xA5, 0x5A);
-  invert(frame, pairs.at(scene.round).first);
-  invert(frame, pairs.at(scene.round).second);
+  invert(frame, pairs.at(number).first);
+  invert(frame, pairs.at(number).second);
   return frame;
+}
+
+Frame two_wrong_bits(NodeScene& scene) {
+  scene.bench.require(&iut::Capabilities::process_side);
+  return with_wrong_pair(scene, scene.round);
+}
+
+bool is_own_command(const NodeScene& scene, const Frame& frame) {
+  const auto& rules = scene.bench.rules();
+  return frame[0] == scene.bench.address() &&
+         (frame[1] == rules.write_command || frame[1] == rules.read_command);
+}
+
+// Behind the last round: that the node took each of them, its round has shown.
+void warn_of_taken_pairs(NodeScene& scene) {
+  if (scene.round + 1 != scene.bench.volume(kPairRounds.quick, kPairRounds.full)) return;
+  unsigned taken = 0;
+  for (unsigned pair = 0; pair < kFrameColumnPairs; ++pair)
+    if (is_own_command(scene, with_wrong_pair(scene, pair))) ++taken;
+  warn_of_blind_check(scene.judge, taken, kFrameColumnPairs,
+                      "commands with two wrong bits in a column were taken");
 }
 
 // The exclusive or cannot see two wrong bits in one column. A node that refuses such a frame has another
@@ -49,15 +73,17 @@ Frame two_wrong_bits(NodeScene& scene) {
 void expect_what_the_octets_say(NodeScene& scene) {
   NodeBench& bench = scene.bench;
   const auto& rules = bench.rules();
-  const bool is_command = scene.frame[1] == rules.write_command || scene.frame[1] == rules.read_command;
   if (scene.round >= kFrameColumnPairs) {
     node_chart::ignored("acts_on_wrong_check", "the check does not fit").run(scene);
-  } else if (scene.frame[0] != bench.address() || !is_command) {
+  } else if (!is_own_command(scene, scene.frame)) {
     node_chart::ignored("acts_on_foreign_frame", "another ID or another command").run(scene);
   } else if (scene.frame[1] == rules.write_command) {
-    scene.judge.expect(!bench.boards().changes().empty(), "right_check_refused",
-                       "the exclusive or fits although two bits are wrong: the write is taken",
-                       "no valve moved");
+    if (bench.boards().changes().empty()) {
+      expect_not_late(bench, scene.judge, scene.valves());
+      scene.judge.fail(
+          "right_check_refused",
+          {{"the exclusive or fits although two bits are wrong: the write is taken"}, "no valve moved"});
+    }
     expect_valves(bench, scene.judge, scene.valves(), "valves_wrong");
   } else {
     scene.judge.expect(bench.has_driven(), "right_check_refused",
@@ -65,6 +91,7 @@ void expect_what_the_octets_say(NodeScene& scene) {
                        "no answer");
     expect_answer(bench, scene.judge, scene.switches, scene.end);
   }
+  warn_of_taken_pairs(scene);
 }
 
 // Of writes and of reads.
@@ -126,7 +153,7 @@ std::vector<NodeCase> node_check_cases() {
            .reference = valve_sources::calculated("80 double errors in one column, 700 others"),
            .tags = {"must"},
            .catches = {{"check_is_crc", "right_check_refused"}, {"check_is_parity", "acts_on_wrong_check"}}},
-          {{kFrameColumnPairs + kFrameOtherPairs / 7, kFrameColumnPairs + kFrameOtherPairs},
+          {kPairRounds,
            {valves_on(),
             sent("a write with two wrong bits: all 80 pairs in one column, then the 700 others",
                  two_wrong_bits),

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "conformance/valve_bus/node_lateness.hpp"
+
 namespace fieldproof::conformance {
 namespace {
 
@@ -14,14 +16,6 @@ using Change = segment::ProcessWords::Change;
 std::string change_text(const Change& change) {
   return fmt::format("{} became {:02X} {:02X} at {}", valves_text(change.before), change.after & 0xFF,
                      change.after >> 8, kernel::describe(change.when));
-}
-
-// What moves later than it may is looked for so much longer.
-constexpr kernel::Duration kLateMoves = 20 * kernel::kMillisecond;
-
-std::string move_text(const Change& change, kernel::Time since) {
-  return fmt::format("they moved {} after it, to {:02X} {:02X}", kernel::describe(change.when - since),
-                     change.after & 0xFF, change.after >> 8);
 }
 
 std::string octets_text(const std::vector<std::uint8_t>& octets) {
@@ -91,6 +85,43 @@ void expect_octets(NodeBench& bench, CaseJudge& judge, const Transmission& answe
   judge.expect(has_ninth_bit, "ninth_bit_wrong", "a ninth bit of 1 in each character", "one of 0");
 }
 
+// The valves move to these, all at once and in time after a write that has `arrived`.
+void expect_moves_of_write(NodeBench& bench, CaseJudge& judge, std::uint16_t wanted, kernel::Time arrived) {
+  const kernel::Duration doubt = bench.uncertainty_of_valves().later;
+  const kernel::Duration limit = limit_of_moves(bench);
+  const auto& changes = bench.boards().changes();
+  // What an earlier write asked for says nothing of this one.
+  if (!changes.empty()) expect_move_not_late(bench, judge, changes.front().after, changes.front().when);
+  if (bench.valves() != wanted) {
+    const ValveMove seen{bench.now(), 0, bench.valves()};
+    expect_not_late(bench, judge, wanted);
+    if (changes.empty())
+      judge.fail("write_not_taken", {{valves_text(wanted)}, valves_text(seen.after), seen.when});
+    // A wrong value may come late, too.
+    const bool is_right_again = bench.valves() == wanted;
+    judge.fail("valves_wrong", {{valves_text(wanted)},
+                                valves_text(is_right_again ? seen.after : bench.valves()),
+                                is_right_again ? seen.when : bench.now()});
+  }
+  if (changes.empty()) return;
+  const Change& first = changes.front();
+  const Change& last = changes.back();
+  judge.expect(first.when + doubt + kRounding >= arrived, "valves_too_early", [&] {
+    return Mismatch{{"no valve moves before the check has come"}, change_text(first), first.when};
+  });
+  judge.expect(last.when - arrived <= limit + kRounding, "valves_too_late", [&] {
+    return Mismatch{
+        {limit_of_moves_text(bench)}, late_move_text(bench, last.after, last.when - arrived), last.when};
+  });
+  bench.note_instant(first.when + kRounding >= arrived && last.when + doubt - arrived <= limit + kRounding,
+                     bench.uncertainty_of_valves());
+  judge.expect(last.when - first.when <= bench.rules().output_skew, "valves_one_by_one", [&] {
+    return Mismatch{{fmt::format("all valves move within {}", kernel::describe(bench.rules().output_skew))},
+                    fmt::format("within {}", kernel::describe(last.when - first.when)),
+                    last.when};
+  });
+}
+
 }  // namespace
 
 std::string valves_text(std::uint16_t valves) {
@@ -129,17 +160,20 @@ Transmission expect_one_answer(NodeBench& bench, CaseJudge& judge, std::uint8_t 
 
 void expect_valves(NodeBench& bench, CaseJudge& judge, std::uint16_t valves, std::string_view reason) {
   bench.require(&iut::Capabilities::process_side);
-  judge.expect(bench.valves() == valves, reason,
-               [&] { return Mismatch{{valves_text(valves)}, valves_text(bench.valves())}; });
+  const std::uint16_t seen = bench.valves();
+  if (seen == valves) return;
+  const kernel::Time when = bench.now();
+  expect_not_late(bench, judge, valves);
+  judge.fail(reason, {{valves_text(valves)}, valves_text(seen), when});
 }
 
 void expect_no_valve_moved(NodeBench& bench, CaseJudge& judge, std::string_view reason,
                            std::string_view why_not) {
   if (!bench.capabilities().process_side) return;  // what cannot be seen is not judged
-  judge.expect(bench.boards().changes().empty(), reason, [&] {
-    const Change& change = bench.boards().changes().front();
-    return Mismatch{{fmt::format("no valve moves: {}", why_not)}, change_text(change), change.when};
-  });
+  if (bench.boards().changes().empty()) return;
+  const Change change = bench.boards().changes().front();
+  expect_move_not_late(bench, judge, change.after, change.when);
+  judge.fail(reason, {{fmt::format("no valve moves: {}", why_not)}, change_text(change), change.when});
 }
 
 void expect_silence(NodeBench& bench, CaseJudge& judge, std::string_view reason, std::string_view why_not) {
@@ -159,38 +193,7 @@ void expect_ignored(NodeBench& bench, CaseJudge& judge, std::string_view reason,
 void expect_write_taken(NodeBench& bench, CaseJudge& judge, std::uint8_t data0, std::uint8_t data1,
                         kernel::Time end) {
   bench.require(&iut::Capabilities::process_side);
-  const kernel::Duration doubt = bench.uncertainty_of_valves().later;
-  const std::uint16_t wanted = bench.valves_of(data0, data1);
-  const kernel::Time arrived = end + bench.distance();
-  const auto& changes = bench.boards().changes();
-  const kernel::Duration limit = bench.delimiter() + actuation_limit(bench.rules());
-  const auto in_time =
-      fmt::format("the valves move at most {} after the last stop bit", kernel::describe(limit));
-  if (bench.valves() != wanted) {
-    bench.wait(kLateMoves);
-    const std::string_view reason = changes.empty()            ? "write_not_taken"
-                                    : bench.valves() == wanted ? "valves_too_late"
-                                                               : "valves_wrong";
-    judge.fail(reason, reason == "valves_too_late"
-                           ? Mismatch{{in_time}, move_text(changes.back(), arrived), changes.back().when}
-                           : Mismatch{{valves_text(wanted)}, valves_text(bench.valves())});
-  }
-  if (!changes.empty()) {
-    const Change& first = changes.front();
-    const Change& last = changes.back();
-    judge.expect(first.when + doubt + kRounding >= arrived, "valves_too_early", [&] {
-      return Mismatch{{"no valve moves before the check has come"}, change_text(first), first.when};
-    });
-    judge.expect(last.when - arrived <= limit + kRounding, "valves_too_late",
-                 [&] { return Mismatch{{in_time}, move_text(last, arrived), last.when}; });
-    bench.note_instant(first.when + kRounding >= arrived && last.when + doubt - arrived <= limit + kRounding,
-                       bench.uncertainty_of_valves());
-    judge.expect(last.when - first.when <= bench.rules().output_skew, "valves_one_by_one", [&] {
-      return Mismatch{{fmt::format("all valves move within {}", kernel::describe(bench.rules().output_skew))},
-                      fmt::format("within {}", kernel::describe(last.when - first.when)),
-                      last.when};
-    });
-  }
+  expect_moves_of_write(bench, judge, bench.valves_of(data0, data1), end + bench.distance());
   if (bench.rules().answers_writes) {
     expect_one_answer(bench, judge, data0, data1, end);
   } else {

@@ -16,7 +16,8 @@ inline constexpr kernel::Duration kRounding = kernel::kNanosecond;
 // "valves 5A A5": the first board, the second one.
 std::string valves_text(std::uint16_t valves);
 
-// The valves stand like this now.
+// The valves stand like this now. Here and wherever else valves are looked at: where a write says so and they
+// do it later, the reason is `valves_too_late` instead (node_lateness.hpp).
 void expect_valves(NodeBench& bench, CaseJudge& judge, std::uint16_t valves, std::string_view reason);
 // No valve has moved since the bench last forgot.
 void expect_no_valve_moved(NodeBench& bench, CaseJudge& judge, std::string_view reason,

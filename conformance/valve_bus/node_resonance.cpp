@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "conformance/valve_bus/blind_check.hpp"
 #include "conformance/valve_bus/node_cases.hpp"
 #include "conformance/valve_bus/node_expect.hpp"
 
@@ -105,8 +106,14 @@ std::vector<Column> columns_of(const NodeBench& bench) {
   return columns;
 }
 
+// Writes that were not taken as sent, and of them those with wrong data.
+struct HitWrites {
+  unsigned hit = 0;
+  unsigned taken = 0;
+};
+
 // Each bit is taken in its middle: a pulse there takes a column, the two others of a character nothing.
-void expect_columns_lost(NodeBench& bench, CaseJudge& judge) {
+HitWrites expect_columns_lost(NodeBench& bench, CaseJudge& judge) {
   std::vector<std::pair<unsigned, std::uint16_t>> seen;
   for (const Column& column : columns_of(bench))
     seen.emplace_back(column.bit, valves_under(bench, column.pulses));
@@ -125,26 +132,27 @@ void expect_columns_lost(NodeBench& bench, CaseJudge& judge) {
           valves_text(valves)};
     });
   }
+  const auto all = static_cast<unsigned>(seen.size());
+  return {all, all};
 }
 
 // ---- the scan ----
 
 struct PitchCounts {
   double kilohertz = 0;
-  unsigned hit = 0;    // writes that were not taken as sent
-  unsigned taken = 0;  // of them, with wrong data
+  HitWrites writes;
 };
 
 // The phases of the pulses are spread over a pitch, so that each place in a bit is met.
 PitchCounts counts_at(NodeBench& bench, double kilohertz, unsigned writes) {
-  PitchCounts counts{kilohertz, 0, 0};
+  PitchCounts counts{kilohertz, {}};
   const double pitch_bits = kScannedBitsPerMillisecond / kilohertz;
   for (unsigned n = 0; n < writes; ++n) {
     const double phase = (n + bench.random().uniform()) / writes;
     const std::uint16_t valves = valves_under(bench, {phase * pitch_bits, pitch_bits});
     if (valves == bench.valves_of(kAllOn, kAllOn)) continue;
-    ++counts.hit;
-    if (valves != 0) ++counts.taken;
+    ++counts.writes.hit;
+    if (valves != 0) ++counts.writes.taken;
   }
   return counts;
 }
@@ -157,25 +165,25 @@ bool can_be_scanned(std::uint8_t address) {
 }
 
 bool takes_less(const PitchCounts& a, const PitchCounts& b) {
-  return a.taken < b.taken;
+  return a.writes.taken < b.writes.taken;
 }
 
 void judge_scan(const PitchCounts& peak, const PitchCounts& other, double in_step, CaseJudge& judge) {
   judge.measure("maximum in step", "kHz", peak.kilohertz);
-  judge.measure("writes taken with wrong data there", "", peak.taken);
-  judge.measure("of writes that were hit there", "", peak.hit);
-  judge.measure("most writes taken with wrong data elsewhere", "", other.taken);
-  judge.expect(peak.taken >= other.taken, "maximum_elsewhere", [&] {
+  judge.measure("writes taken with wrong data there", "", peak.writes.taken);
+  judge.measure("of writes that were hit there", "", peak.writes.hit);
+  judge.measure("most writes taken with wrong data elsewhere", "", other.writes.taken);
+  judge.expect(peak.writes.taken >= other.writes.taken, "maximum_elsewhere", [&] {
     return Mismatch{
         {fmt::format("most writes are taken with wrong data at {:.1f} kHz, where three pulses last "
                      "a character",
                      in_step)},
-        fmt::format("{} of {} there, {} of {} at {:.1f} kHz", peak.taken, peak.hit, other.taken, other.hit,
-                    other.kilohertz)};
+        fmt::format("{} of {} there, {} of {} at {:.1f} kHz", peak.writes.taken, peak.writes.hit,
+                    other.writes.taken, other.writes.hit, other.kilohertz)};
   });
 }
 
-void scan_pitches(NodeBench& bench, CaseJudge& judge) {
+HitWrites scan_pitches(NodeBench& bench, CaseJudge& judge) {
   const double in_step = kPulsesInStep * kScannedBitsPerMillisecond / bits_of_character(bench);
   const double step = bench.volume(0.5, 0.25);
   std::vector<PitchCounts> near;
@@ -187,24 +195,28 @@ void scan_pitches(NodeBench& bench, CaseJudge& judge) {
   }
   PitchCounts peak = *std::ranges::max_element(near, takes_less);
   PitchCounts other = *std::ranges::max_element(far, takes_less);
-  if (other.taken >= peak.taken) {  // by chance, or not: the phases are drawn
+  if (other.writes.taken >= peak.writes.taken) {  // by chance, or not: the phases are drawn
     constexpr unsigned kCloserLook = 480;
     peak = counts_at(bench, peak.kilohertz, kCloserLook);
     other = counts_at(bench, other.kilohertz, kCloserLook);
   }
   judge_scan(peak, other, in_step, judge);
+  return peak.writes;
 }
 
 void pulses_in_step_pass_the_check(NodeBench& bench, CaseJudge& judge) {
   bench.require(&iut::Capabilities::process_side);
   expect_serves(bench, judge);
-  expect_columns_lost(bench, judge);
+  HitWrites in_step = expect_columns_lost(bench, judge);
   if (can_be_scanned(bench.address())) {
-    scan_pitches(bench, judge);
+    const HitWrites scanned = scan_pitches(bench, judge);
+    in_step.hit += scanned.hit;
+    in_step.taken += scanned.taken;
   } else {
     judge.measure("pitches that were scanned at this address", "", 0);
   }
   expect_serves(bench, judge);
+  warn_of_blind_check(judge, in_step.taken, in_step.hit, "hit writes in step were taken with wrong data");
 }
 
 NodeCase resonance_case(std::string_view length, CharacterProfile characters, std::string_view kilohertz) {

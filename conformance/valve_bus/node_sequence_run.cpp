@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "conformance/valve_bus/node_expect.hpp"
+#include "conformance/valve_bus/node_lateness.hpp"
 #include "conformance/valve_bus/node_vocabulary.hpp"
 
 namespace fieldproof::conformance {
@@ -226,8 +227,19 @@ void NodeSequenceRun::compare_valves() {
   std::vector<LevelHistory> extremes;
   for (const NodeTwin& twin : twins_) extremes.push_back(twin.valves());
   const kernel::Time until = std::max(judged_until_, bench_.now() - kind.earlier);
-  compare_levels(kind, valves_, extremes, judged_until_, until, judge_);
+  const auto mismatch = first_mismatch(kind, valves_, extremes, judged_until_, until);
+  if (mismatch) fail_valves(kind, *mismatch);
   judged_until_ = until;
+}
+
+void NodeSequenceRun::fail_valves(const LevelKind& kind, const LevelMismatch& mismatch) {
+  if (mismatch.is_change) {
+    expect_move_not_late(bench_, judge_, static_cast<std::uint16_t>(mismatch.value), mismatch.when);
+  } else {
+    for (const std::int64_t value : mismatch.allowed)
+      expect_not_late(bench_, judge_, static_cast<std::uint16_t>(value), mismatch.when);
+  }
+  fail_level(kind, mismatch, judge_);
 }
 
 // Of a question the tester awaits the end, so what has come by now is all that comes.

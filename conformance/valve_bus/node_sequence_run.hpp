@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "conformance/comparison/observation.hpp"
 #include "conformance/judging.hpp"
 #include "conformance/sequence.hpp"
 #include "conformance/valve_bus/node_bench.hpp"
@@ -66,6 +67,7 @@ class NodeSequenceRun final : private segment::Tap {
   void compare();
   void judge_invariants();
   void compare_valves();
+  [[noreturn]] void fail_valves(const LevelKind& kind, const LevelMismatch& mismatch);
   void compare_answers();
   // Of what was driven since then nothing more is compared.
   void forget_answers();

@@ -153,5 +153,25 @@ TEST(NodeSequence, ASilenceAtALimitIsNotJudged) {
   }
 }
 
+// A wrong instant is no wrong value.
+TEST(NodeSequence, ValvesThatMoveTooLateAreCalledLate) {
+  const SequenceVocabulary& words = node_sequence_role().vocabulary;
+  const auto write = static_cast<std::size_t>(words.find("write") - words.words.data());
+  const Sequence sequence{{{write, {1, 2, 100}}, {write, {3, 4, 1'000}}}};
+  const judge::CaseResult result =
+      run_sequence(valve_suite(), node_sequence_role(), sequence, search_of("mutant:valves_late", 1).setup)
+          .result;
+  EXPECT_EQ(result.reason, "valves_too_late");
+  conformance::Setup setup;
+  setup.volume = Volume::quick;
+  setup.implementations = {{"node", 0, "mutant:valves_late"}};
+  std::size_t n = 0;
+  for (const TestCase& one : valve_suite().cases()) {
+    if (one.role() != "node" || !has_tag(one, "derived")) continue;
+    if (kernel::kIsSanitized && n++ > 0) continue;
+    EXPECT_EQ(valve_suite().run(one, setup).result.reason, "valves_too_late") << one.id;
+  }
+}
+
 }  // namespace
 }  // namespace fieldproof::conformance

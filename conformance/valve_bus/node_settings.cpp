@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "conformance/valve_bus/node_lateness.hpp"
 #include "conformance/valve_bus/node_scene.hpp"
 
 // The same commands to nodes that are set otherwise: each setting at its ends.
@@ -34,6 +35,7 @@ void expect_driven_once(NodeScene& scene, std::uint16_t valves, std::string_view
   const auto& changes = scene.bench.boards().changes();
   const bool has_stood =
       std::ranges::any_of(changes, [&](const auto& change) { return change.after == valves; });
+  if (!has_stood) expect_not_late(scene.bench, scene.judge, valves);
   scene.judge.expect(has_stood, reason, [&] {
     return Mismatch{
         {fmt::format("first {}, by the write before the last", valves_text(valves))},

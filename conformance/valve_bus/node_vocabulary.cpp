@@ -25,7 +25,7 @@ constexpr std::array<std::int64_t, 5> kChecks{0xFF, 0x01, 0x80, 0x0F, 0xA5};
 constexpr std::array<std::int64_t, 3> kTenths{10, 17, 30};
 // Far from any that a receiver may take.
 constexpr std::array<std::int64_t, 2> kRates{50, 170};
-constexpr std::array<std::int64_t, 2> kSixteenths{2, 4};
+constexpr std::array<std::int64_t, 2> kGlitchSixteenths{2, 4};
 constexpr std::array<std::int64_t, 5> kPolls{2, 20, 2, 20, 410};
 constexpr std::array<std::int64_t, 5> kWaits{1, 10, 66, 100, 1000};
 
@@ -158,7 +158,7 @@ std::vector<SequenceWord> words_of_lines_and_times() {
        .weight = 1},
       {.word = "glitch",
        .meaning = "the line is low for so many sixteenths of a bit",
-       .numbers = {{"sixteenths", 2, 4, 2, kSixteenths, true}, silence()},
+       .numbers = {{"sixteenths", 2, 4, 2, kGlitchSixteenths, true}, silence()},
        .weight = 2},
       {.word = "poll",
        .meaning = "so many reads of the node's own, one after the other",
