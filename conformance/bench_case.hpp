@@ -50,8 +50,12 @@ judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting
   std::optional<Bench> bench;
   CaseJudge judge(one.test_case);
   judge.use_clock([&] { return bench ? bench->segment().now() : kernel::kStart; });
-  if constexpr (requires { bench->decode_lines(); }) {
-    judge.use_decode([&] { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
+  if constexpr (requires { bench->decode_lines(kernel::kStart); }) {
+    judge.use_decode(
+        [&](kernel::Time time) { return bench ? bench->decode_lines(time) : std::vector<std::string>{}; });
+  } else if constexpr (requires { bench->decode_lines(); }) {
+    judge.use_decode(
+        [&](kernel::Time) { return bench ? bench->decode_lines() : std::vector<std::string>{}; });
   }
   judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
     bench.emplace(one.needs, setting);
@@ -74,7 +78,8 @@ judge::CaseResult run_on_bench(const BenchCase<Bench, Needs>& one, const Setting
 // that silence proves nothing, and the case is inconclusive. Only for a bench that cannot ask, too.
 template <typename Bench, typename Needs, typename Setting>
 void require_driven(const BenchCase<Bench, Needs>& one, Setting setting, judge::CaseResult& result) {
-  if (result.verdict != judge::Verdict::pass || result.has_driven) return;
+  const bool has_passed = result.verdict == judge::Verdict::pass || result.verdict == judge::Verdict::warn;
+  if (!has_passed || result.has_driven) return;
   setting.make_recorder = nullptr;
   if constexpr (requires { setting.plan = {}; }) setting.plan = {};
   std::optional<Bench> bench;

@@ -12,6 +12,7 @@
 #include "conformance/line_watch.hpp"
 #include "conformance/stressed_receiver.hpp"
 #include "conformance/test_case.hpp"
+#include "harness/fault/known_names.hpp"
 #include "harness/fault/plan.hpp"
 #include "harness/field/settings.hpp"
 #include "harness/judge/pics.hpp"
@@ -85,7 +86,12 @@ class CaseBench {
   void watch(Line& line) {
     line_watch_.watch(line, segment_.trace());
   }
-  // Null: nothing is declared.
+  // Null: nothing is declared. What the plan names that is not of these is refused.
+  fault::InstalledPlan* make_plan(const fault::Plan& plan, const fault::KnownNames& known) {
+    fault::expect_known_names(plan, known);
+    return make_plan(plan);
+  }
+  // The same where whoever installs it looks at its names.
   fault::InstalledPlan* make_plan(const fault::Plan& plan) {
     if (!plan.empty())
       plan_ = std::make_unique<fault::InstalledPlan>(plan, segment_.trace(), random_.split("plan"));

@@ -15,14 +15,19 @@ void DecodedLines::add_supply(kernel::Time when, bool is_on) {
   add(when, fmt::format("{} at {}", supply_text(is_on), kernel::describe(when)));
 }
 
-std::vector<std::string> DecodedLines::last() const {
+std::vector<std::string> DecodedLines::around(kernel::Time time) const {
   constexpr std::size_t kMostLines = 12;
+  constexpr std::size_t kMostAfter = 2;
+  using Line = std::pair<kernel::Time, std::string>;
   auto sorted = all_;
-  std::ranges::stable_sort(sorted, {}, &std::pair<kernel::Time, std::string>::first);
+  std::ranges::stable_sort(sorted, {}, &Line::first);
   if (sorted.empty()) return {"nothing was driven by anybody"};
-  const std::size_t first = sorted.size() - std::min(sorted.size(), kMostLines);
+  const auto after =
+      static_cast<std::size_t>(std::ranges::upper_bound(sorted, time, {}, &Line::first) - sorted.begin());
+  const std::size_t end = std::min(sorted.size(), after + kMostAfter);
+  const std::size_t first = end - std::min(end, kMostLines);
   std::vector<std::string> lines;
-  for (std::size_t n = first; n < sorted.size(); ++n) lines.push_back(std::move(sorted[n].second));
+  for (std::size_t n = first; n < end; ++n) lines.push_back(std::move(sorted[n].second));
   return lines;
 }
 

@@ -20,8 +20,11 @@ class DecodedLines {
   // Nothing of a supply that is there from the begin.
   void add_supply(kernel::Time when, bool is_on);
   void add(const DecodedLines& others) { all_.insert(all_.end(), others.all_.begin(), others.all_.end()); }
-  // Those that are shown; where there are none, a line that says so.
-  std::vector<std::string> last() const;
+  // Those that are shown of what is found at `time`: what came before it, and what came next. Where there are
+  // none, a line that says so.
+  std::vector<std::string> around(kernel::Time time) const;
+  // The same at the end.
+  std::vector<std::string> last() const { return around(kernel::kNever); }
 
  private:
   std::vector<std::pair<kernel::Time, std::string>> all_;

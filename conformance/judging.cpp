@@ -24,7 +24,7 @@ void CaseJudge::add(judge::Verdict verdict, std::string_view reason, Mismatch si
   finding.step = step_;
   finding.first_difference = std::move(sighting.first_difference);
   finding.decode = std::move(sighting.decode);
-  if (finding.decode.empty() && decode_) finding.decode = decode_();
+  if (finding.decode.empty() && decode_) finding.decode = decode_(finding.time);
   findings_.push_back(std::move(finding));
 }
 

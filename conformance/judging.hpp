@@ -47,8 +47,10 @@ class CaseJudge {
 
   // The time of findings that bring none; zero without a clock.
   void use_clock(std::function<kernel::Time()> clock) { clock_ = std::move(clock); }
-  // Decode lines for findings that bring none: usually the last cycles of the lower tester.
-  void use_decode(std::function<std::vector<std::string>()> decode) { decode_ = std::move(decode); }
+  // Decode lines for findings that bring none, of what happened around their instants.
+  void use_decode(std::function<std::vector<std::string>(kernel::Time)> decode) {
+    decode_ = std::move(decode);
+  }
 
   // Is given each step as it begins, to mark it on the time line.
   void use_steps(std::function<void(const std::string&)> on_step) { on_step_ = std::move(on_step); }
@@ -91,7 +93,7 @@ class CaseJudge {
 
   const TestCase& test_case_;
   std::function<kernel::Time()> clock_;
-  std::function<std::vector<std::string>()> decode_;
+  std::function<std::vector<std::string>(kernel::Time)> decode_;
   std::function<void(const std::string&)> on_step_;
   std::string step_;
   std::vector<judge::Finding> findings_;

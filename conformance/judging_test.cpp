@@ -41,7 +41,7 @@ TEST(CaseJudge, ends_at_the_first_failure) {
   CaseJudge judge(test_case);
   bool went_on = false;
   judge.use_clock([] { return kernel::kStart + kernel::kSecond; });
-  judge.use_decode([] { return std::vector<std::string>{"cycle 1: data"}; });
+  judge.use_decode([](kernel::Time) { return std::vector<std::string>{"cycle 1: data"}; });
   const judge::CaseResult result = judge.run_procedure([&](CaseJudge& j) {
     j.warn("slow", {{"fast"}, "slow"});
     j.expect_equal(2U, 3, "too_few", "stations");

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "conformance/case_bench.hpp"
 #include "harness/segment/medium.hpp"
@@ -31,9 +32,12 @@ class LineBench : public CaseBench, private segment::Station {
     place_name_ = role + "/in";
     place_ = &line_.attach(place_name_, seat_, 0, distance, receives_own_echo);
   }
-  // Declared faults at the place of the IUT.
-  void install(const fault::Plan& plan, std::int64_t bit_rate) {
-    if (fault::InstalledPlan* const made = make_plan(plan))
+  // Declared faults at the place of the IUT; `observations` are those that the bench makes besides the line.
+  void install(const fault::Plan& plan, std::int64_t bit_rate, std::vector<std::string> observations = {}) {
+    observations.emplace_back(segment::kContention);
+    for (std::string& name : observations_of_the_watch()) observations.push_back(std::move(name));
+    if (fault::InstalledPlan* const made =
+            make_plan(plan, fault::names_of_transmissions({place_name_}, std::move(observations))))
       place_->set_channel(made->channel_for({place_name_, place_->trace_channel(), bit_rate}));
   }
   // The IUT was given something from outside of the line.

@@ -21,6 +21,13 @@ LineWatch::LineWatch(kernel::Duration shortest_transmission,
   rules_.most_transmissions = static_cast<std::size_t>(kWindow / shortest_transmission) + 1;
 }
 
+std::vector<std::string> observations_of_the_watch() {
+  std::vector<std::string> names;
+  for (const segment::ViolationKind kind : segment::kViolationKinds)
+    names.emplace_back(segment::text_of(kind));
+  return names;
+}
+
 segment::LineMonitor& LineWatch::add(const std::string& line, trace::Trace& trace, trace::Channel place) {
   return places_.emplace_back(Place{line, segment::LineMonitor(rules_, trace, place)}).monitor;
 }

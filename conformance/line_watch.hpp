@@ -3,6 +3,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "conformance/judging.hpp"
 #include "harness/kernel/time.hpp"
@@ -12,6 +13,9 @@
 // The monitors of the lines that are driven in a bench. They are always on: whatever a case looks at, a
 // station that drives over itself or babbles fails it.
 namespace fieldproof::conformance {
+
+// What it observes, as a plan of faults may name it.
+std::vector<std::string> observations_of_the_watch();
 
 class LineWatch {
  public:

@@ -114,7 +114,7 @@ std::vector<DrivenDlpdu> LinkBench::listen() {
   return all;
 }
 
-std::vector<std::string> LinkBench::decode_lines() {
+std::vector<std::string> LinkBench::decode_lines(kernel::Time time) {
   DecodedLines lines;
   const auto tell = [&](std::string_view who, const std::vector<DrivenDlpdu>& dlpdus) {
     for (const DrivenDlpdu& one : dlpdus) {
@@ -125,7 +125,7 @@ std::vector<std::string> LinkBench::decode_lines() {
   tell("tester drove", sent_.all());
   tell("station drove", driven_.all());
   lines.add(supply_);
-  return lines.last();
+  return lines.around(time);
 }
 
 }  // namespace fieldproof::conformance

@@ -93,8 +93,8 @@ class LinkBench : public LineBench {
 
   // A DLPDU as a person reads it; of what is none its octets.
   virtual std::string words(const DrivenDlpdu& dlpdu) const = 0;
-  // The last DLPDUs of both, in words.
-  std::vector<std::string> decode_lines();
+  // The DLPDUs of both around an instant, in words.
+  std::vector<std::string> decode_lines(kernel::Time time);
 
  protected:
   // Stresses must outlive the bench; null: there are none.

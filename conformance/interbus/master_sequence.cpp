@@ -34,7 +34,7 @@ class MasterSequenceRun {
                .volume = Volume::quick,
                .settings = settings}),
         sides_{MasterSide(bench, &judge), MasterSide(twin_, nullptr)} {
-    judge.use_decode([&bench] { return bench.ring().describe_last(6); });
+    judge.use_decode([&bench](kernel::Time) { return bench.ring().describe_last(6); });
     for (MasterSide& side : sides_) {
       side.bench().configuration() = configuration_of_sequence(settings);
       side.bench().rules() = side.bench().configuration().rules;

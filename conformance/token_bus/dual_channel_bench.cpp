@@ -29,7 +29,9 @@ ManagerBench::ManagerBench(const ManagerNeeds& needs, const ManagerSetting& sett
   start_recording(setting, configuration().rules);
   mac_out_.tap_driven(indicated_);
   watch(mac_out_);
-  fault::InstalledPlan* const made = make_plan(setting.plan);
+  fault::InstalledPlan* const made =
+      make_plan(setting.plan, fault::names_of_transmissions({channel_in_[0]->name(), channel_in_[1]->name()},
+                                                            observations_of_the_watch()));
   for (std::size_t n = 0; n < channel_out_.size(); ++n) {
     channel_out_.at(n)->tap_driven(requested_.at(n));
     watch(*channel_out_.at(n));

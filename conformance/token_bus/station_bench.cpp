@@ -157,7 +157,7 @@ std::optional<DrivenFrame> TokenBench::next(kernel::Time limit) {
   return one;
 }
 
-std::vector<std::string> TokenBench::decode_lines() {
+std::vector<std::string> TokenBench::decode_lines(kernel::Time time) {
   DecodedLines lines;
   const auto add = [&](std::string_view who, std::span<const DrivenFrame> frames) {
     for (const DrivenFrame& one : frames) {
@@ -168,7 +168,7 @@ std::vector<std::string> TokenBench::decode_lines() {
   add("tester drove", sent());
   add("station drove", driven());
   lines.add(supply_);
-  return lines.last();
+  return lines.around(time);
 }
 
 void TokenBench::ask() {

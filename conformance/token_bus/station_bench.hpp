@@ -112,8 +112,8 @@ class TokenBench final : public LineBench {
 
   segment::MediumPort& tester_place() { return tester(); }
   const token_bus::StationConfiguration& configuration() const { return configuration_; }
-  // The last frames of both, in words.
-  std::vector<std::string> decode_lines();
+  // The frames of both around an instant, in words.
+  std::vector<std::string> decode_lines(kernel::Time time);
   // What its user got.
   std::string user_text() const;
   void finish() { station_->end(); }

@@ -25,7 +25,8 @@ TranslatorBench::TranslatorBench(const TranslatorNeeds& needs, const TranslatorS
   mac_out_.tap_driven(indicated_);
   watch(phy_out_);
   watch(mac_out_);
-  if (fault::InstalledPlan* const made = make_plan(setting.plan)) {
+  if (fault::InstalledPlan* const made = make_plan(
+          setting.plan, fault::names_of_transmissions({phy_in_.name()}, observations_of_the_watch()))) {
     phy_in_.set_channel(made->channel_for(
         {phy_in_.name(), phy_in_.trace_channel(), kUnitLevels * configuration().rules.phy_bit_rate}));
   }

@@ -50,9 +50,11 @@ class FieldMap {
 // with one unit and one field "levels".
 class TransmissionFields final : public FieldMap {
  public:
+  static constexpr std::string_view kFrameKind = "transmission";
+  static constexpr std::string_view kField = "levels";
+
   void locate(const line::Waveform& sent, std::vector<Span>& spans) override {
-    spans.push_back(
-        {"transmission", ++count_, 0, "levels", 0, static_cast<std::uint32_t>(sent.levels.size())});
+    spans.push_back({kFrameKind, ++count_, 0, kField, 0, static_cast<std::uint32_t>(sent.levels.size())});
   }
   void follow(const line::Waveform&) override { ++count_; }
 

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "harness/config/nearest.hpp"
+#include "harness/fault/fields.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::fault {
@@ -43,6 +45,13 @@ class Check {
 };
 
 }  // namespace
+
+KnownNames names_of_transmissions(std::vector<std::string> receivers, std::vector<std::string> observations) {
+  return {std::move(receivers),
+          {std::string(TransmissionFields::kFrameKind)},
+          {std::string(TransmissionFields::kField)},
+          std::move(observations)};
+}
 
 void expect_known_names(const Plan& plan, const KnownNames& known) {
   for (std::size_t n = 0; n < plan.rules().size(); ++n) {

@@ -16,6 +16,9 @@ struct KnownNames {
   std::vector<std::string> observations;
 };
 
+// Of receivers whose protocol gives no map of its frames (see TransmissionFields).
+KnownNames names_of_transmissions(std::vector<std::string> receivers, std::vector<std::string> observations);
+
 // Throws kernel::Error(configuration) for the first pattern of a rule or a disturbance that fits no known
 // name; the sentence tells which one and the nearest names.
 void expect_known_names(const Plan& plan, const KnownNames& known);

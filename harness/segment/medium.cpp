@@ -254,7 +254,7 @@ void Medium::contend(MediumPort& at, const std::vector<MediumPort::Flight>& grou
   } else {
     resolve_by_instants(group, end, at.random_, resolved);
   }
-  segment_.trace().observe(at.trace_channel_, resolved.start, "contention", group.size());
+  segment_.trace().observe(at.trace_channel_, resolved.start, kContention, group.size());
   const Contention contention{at.trace_channel_, resolved.start, end, group.size()};
   for (ContentionWatcher* watcher : watchers_) watcher->on_contention(contention);
 }

@@ -33,6 +33,9 @@
 // Limit: propagation only; no attenuation, no reflections.
 namespace fieldproof::segment {
 
+// The observation where several transmissions meet at a receiver.
+inline constexpr std::string_view kContention = "contention";
+
 // What the line is where drivers disagree.
 enum class ContentionRule : std::uint8_t {
   zero_wins,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -37,6 +38,10 @@ struct MonitorRules {
 };
 
 enum class ViolationKind : std::uint8_t { overlap, long_silence, short_gap, long_drive, too_many };
+
+inline constexpr std::array kViolationKinds = {ViolationKind::overlap, ViolationKind::long_silence,
+                                               ViolationKind::short_gap, ViolationKind::long_drive,
+                                               ViolationKind::too_many};
 
 // The observation's name: "monitor: overlap" ...
 std::string_view text_of(ViolationKind kind);
