@@ -42,6 +42,7 @@ iut::Attachment attached_to_network(const NetworkRequest& request, const iut::Ro
     throw kernel::Error(kernel::ErrorKind::usage,
                         fmt::format("'{}': a network runs in virtual time, and a serial line does not", uri));
   }
+  attachment->is_in_network = true;
   return std::move(*attachment);
 }
 

@@ -22,6 +22,9 @@ struct Attachment {
   Device* device = nullptr;
   std::shared_ptr<void> lease;            // keeps the device
   std::function<void()> on_well_ended{};  // the case has ended as it should
+  // It plays in a network that bursts disturb, and no case judges how it receives: whoever is given more than
+  // levels is given what a right receiver in front of it makes of them.
+  bool is_in_network = false;
 };
 
 inline constexpr kernel::Duration kLongestDrive = 10 * kernel::kSecond;
@@ -63,6 +66,7 @@ class AttachedCase {
   }
   Capabilities capabilities() const { return attachment_.device->capabilities(); }
   UnitKind unit_kind() const { return attachment_.device->unit_kind(); }
+  bool is_in_network() const { return attachment_.is_in_network; }
   // It has done nothing wrong yet.
   bool is_well() const { return is_well_; }
   bool hears_levels() const { return unit_kind() == UnitKind::levels; }

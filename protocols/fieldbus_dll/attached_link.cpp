@@ -46,14 +46,23 @@ void AttachedLink::tell_frame(const line::Waveform& reception) {
   const auto frames = line::delimited_frames_in(reception, rules_.bit_rate);
   const bool is_one = frames.size() == 1 && frames[0].end == line::FrameEnd::whole &&
                       wave_of(frames[0].octets, reception.start).levels == reception.levels;
-  if (!is_one)
+  if (!is_one && !attached().is_in_network())
     throw iut::CannotBeDone("an implementation that receives telegrams receives whole frames only");
-  const unsigned before = rules_.preamble_octets + 1;
+  for (const line::DelimitedFrame& frame : frames) {
+    const bool is_frame = frame.end == line::FrameEnd::whole && !frame.octets.empty() &&
+                          frame.octets.size() <= kMostFrameOctets;
+    if (is_frame) tell(frame, reception);
+  }
+}
+
+void AttachedLink::tell(const line::DelimitedFrame& frame, const line::Waveform& reception) {
+  constexpr std::int64_t kHalfBitsOfAnOctet = 16;
+  const kernel::Time delimiter =
+      reception.start + static_cast<std::int64_t>(frame.half_bit) * (octets(rules_, 1) / kHalfBitsOfAnOctet);
   std::vector<iut::Character> characters;
-  for (const std::uint8_t octet : frames[0].octets) {
-    const auto place = static_cast<std::int64_t>(before + characters.size());
-    characters.push_back(
-        {reception.start + octets(rules_, place), reception.start + octets(rules_, place + 1), octet});
+  for (const std::uint8_t octet : frame.octets) {
+    const auto place = static_cast<std::int64_t>(characters.size()) + 1;
+    characters.push_back({delimiter + octets(rules_, place), delimiter + octets(rules_, place + 1), octet});
   }
   attached().call(reception.end(),
                   [&](iut::Device& device) { device.receive(kLinePort, characters, reception.end()); });

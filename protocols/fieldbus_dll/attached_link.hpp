@@ -15,7 +15,8 @@
 //   port 2  the user: characters are the octets of what it asks for, and of what it is told
 //
 // An implementation that hears frames is no receiver of its own: a case that drives anything but whole
-// frames, as this link has them, does not apply to it.
+// frames, as this link has them, does not apply to it. In a network it is given the whole frames, right or
+// wrong, that a right receiver finds in what bursts leave.
 namespace fieldproof::fieldbus_dll {
 
 using iut::kEvent;
@@ -42,6 +43,7 @@ class AttachedLink : public iut::UserLine {
  private:
   bool hears_frames() { return attached().unit_kind() == iut::UnitKind::telegrams; }
   void tell_frame(const line::Waveform& reception);
+  void tell(const line::DelimitedFrame& frame, const line::Waveform& reception);
   line::Waveform wave_of(std::span<const std::uint8_t> octets, kernel::Time start) const;
 
   LinkRules rules_;
