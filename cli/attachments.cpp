@@ -86,6 +86,11 @@ bool is_in_process(std::string_view uri) {
   return is_plugin_uri(uri) && uri.ends_with(kInProcess);
 }
 
+std::string in_own_process(std::string_view uri) {
+  if (is_in_process(uri)) uri.remove_suffix(kInProcess.size());
+  return std::string(uri);
+}
+
 std::string plugin_path(std::string_view uri) {
   const std::size_t end = std::min(uri.find('?'), uri.size());
   const std::string path(uri.substr(kPlugin.size(), end - kPlugin.size()));

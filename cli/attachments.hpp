@@ -26,6 +26,8 @@ bool is_attachment(std::string_view uri);
 bool is_plugin_uri(std::string_view uri);
 bool is_in_process(std::string_view uri);
 std::string plugin_path(std::string_view uri);
+// The same library in a process of its own.
+std::string in_own_process(std::string_view uri);
 
 // The library, in this process, in a role.
 std::unique_ptr<iut::Device> library_of(const std::string& uri, const iut::RoleName& role);

@@ -35,16 +35,6 @@ std::string in_quotes(const fs::path& path) {
   return "'" + path.string() + "'";
 }
 
-// The whole path of a program that the system has; empty where it has none.
-std::string installed(const std::string& name) {
-  const char* path = std::getenv("PATH");
-  std::stringstream folders(std::string("/usr/bin:/bin:/usr/local/bin:") + (path == nullptr ? "" : path));
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (fs::exists(fs::path(folder) / name)) return (fs::path(folder) / name).string();
-  }
-  return {};
-}
-
 class Attachments : public ProgramFixture {
  protected:
   struct Case {
@@ -98,6 +88,9 @@ class Attachments : public ProgramFixture {
     return (all + kOneOf - 1) / kOneOf;
   }
 
+  // A warn says something of the bus.
+  static bool is_kept(const Case& one) { return one.verdict == "pass" || one.verdict == "warn"; }
+
   // Who hears telegrams hears whole ones: cases under bursts and about levels are not for it.
   void expect_passes(const std::string& uri, const std::string& suite = std::string(kSuite),
                      bool hears_telegrams = false) {
@@ -105,8 +98,8 @@ class Attachments : public ProgramFixture {
     EXPECT_EQ(cases.size(), count_of(suite)) << uri;
     for (const auto& [id, one] : cases) {
       const bool is_left_out = hears_telegrams && (id.starts_with("immunity/") || kOfLevels.contains(id));
-      EXPECT_EQ(one.verdict, is_left_out ? "not-applicable" : "pass")
-          << uri << ": " << id << ": " << one.reason << one.findings;
+      EXPECT_TRUE(is_left_out ? one.verdict == "not-applicable" : is_kept(one))
+          << uri << ": " << id << ": " << one.verdict << ": " << one.reason << one.findings;
     }
   }
 
@@ -238,7 +231,7 @@ TEST_F(Attachments, NodeInCPassesAtTheLowestBitRateWithAcknowledge) {
     if (one.verdict == "not-applicable")
       not_applicable.insert(id);
     else
-      EXPECT_EQ(one.verdict, "pass") << id << ": " << one.reason << one.findings;
+      EXPECT_TRUE(is_kept(one)) << id << ": " << one.reason << one.findings;
   }
   const std::set<std::string> at_other_rates{"loss/afterwards_the_node_serves_as_before",
                                              "loss/commands_to_it_are_signs_of_life",

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <span>
+#include <stop_token>
 #include <system_error>
 #include <vector>
 
@@ -9,12 +11,16 @@
 #include "cli/attachments.hpp"
 #include "cli/case_file.hpp"
 #include "cli/fuzz_document.hpp"
+#include "cli/guarded_search.hpp"
 #include "cli/run_setup.hpp"
 #include "cli/searched_role.hpp"
 #include "cli/sequence_corpus.hpp"
 #include "cli/stored_document.hpp"
 #include "cli/stored_sequence.hpp"
 #include "cli/verbs.hpp"
+#include "conformance/judging.hpp"
+#include "conformance/sequence_octets.hpp"
+#include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/untrusted_text.hpp"
 #include "reports/run_directory.hpp"
 #include "reports/text_summary.hpp"
@@ -119,7 +125,7 @@ std::string fuzzed_text(const fuzz::SequenceFuzzResult& result, const conformanc
 }
 
 fuzz::SequenceFuzzResult searched(Session& session, const SequenceFile& target, const CorpusOfCall& corpus,
-                                  const Interruption& interruption) {
+                                  const Interruption& interruption, GuardedSearch* guard) {
   fuzz::SequenceFuzz search;
   search.suite = target.suite;
   search.role = target.role;
@@ -127,7 +133,14 @@ fuzz::SequenceFuzzResult searched(Session& session, const SequenceFile& target, 
   search.seeds = corpus.stored.sequences();
   search.runs = cases_of_call(session.settings);
   search.stop = interruption.token();
-  search.on_progress = [&](std::uint64_t done) { session.terminal.progress(static_cast<std::size_t>(done)); };
+  search.on_begin = [&](const fuzz::SequenceFuzzResult& before, std::span<const std::uint8_t> octets) {
+    if (guard != nullptr) guard->begins(before, octets);
+    session.terminal.progress(static_cast<std::size_t>(before.run));
+  };
+  if (guard != nullptr) {
+    search.on_kept = [&](std::span<const std::uint8_t> octets) { guard->keeps(octets); };
+    search.on_found = [&] { guard->has_found(); };
+  }
   session.terminal.begin_progress(static_cast<std::size_t>(search.runs), "sequences");
   fuzz::SequenceFuzzResult result = fuzz::search(search);
   session.terminal.end_progress();
@@ -153,19 +166,11 @@ void keep_document(const Session& session, const SequenceFile& target, const Cor
       options_of_the_moment(session.settings));
 }
 
-}  // namespace
-
-int fuzz_role(Session& session) {
-  SequenceFile target = searched_role(session);
-  const std::string path = found_path(session, target);
-  reports::check_writable(path);
+int search_role(Session& session, SequenceFile& target, const std::string& path, const CorpusOfCall& corpus,
+                GuardedSearch* guard) {
   const Settings& settings = session.settings;
-  if (settings.is_set("input")) return case_of_input(session, target, path);
-  if (settings.is_set("json")) reports::check_writable(settings.text("json"));
-  const CorpusOfCall corpus = corpus_of_call(session, target);
-  session.terminal.print(reports::run_header(identity_of(session, target.setup, 1), manifest_of(session, 1)));
   const Interruption interruption(settings.duration("max-time"));
-  const fuzz::SequenceFuzzResult result = searched(session, target, corpus, interruption);
+  const fuzz::SequenceFuzzResult result = searched(session, target, corpus, interruption, guard);
   keep_document(session, target, corpus, result,
                 {result.found ? found_in(result, corpus) : "", replay_command(path), interruption.reason(),
                  interruption.signal() != 0});
@@ -177,6 +182,64 @@ int fuzz_role(Session& session) {
   // To make a corpus smaller is no search.
   const bool is_minimising = cases_of_call(settings) == 0 && result.seeds_run == 0;
   return is_minimising ? kAllAsExpected : code_of_search(result);
+}
+
+// What the library did to the search is a verdict where it has a process of its own. One that does it only
+// after other sequences does not do it again there: then what was seen here is the finding.
+conformance::SequenceFound found_by_its_end(const SequenceFile& target, const BrokenSearch& broken,
+                                            const conformance::SequenceVocabulary& vocabulary,
+                                            const std::stop_token& stop) {
+  conformance::Sequence sequence = conformance::sequence_of_octets(broken.octets, vocabulary);
+  auto found = conformance::shrink(*target.suite, *target.role, sequence, target.setup, stop);
+  if (found) return std::move(*found);
+  conformance::CaseJudge judge(target.role->test_case);
+  judge::CaseResult seen = judge.run_procedure([&](conformance::CaseJudge&) {
+    throw iut::Misbehaviour(broken.hangs ? iut::reasons::kHangs : iut::reasons::kCrashed,
+                            "in the process of the search it " + broken.how);
+  });
+  return {sequence, sequence, {}, std::move(seen), 0, false};
+}
+
+// The kept sequences are not made fewer: their coverage went with the library.
+int keep_broken(Session& session, SequenceFile& target, const std::string& path, const CorpusOfCall& corpus,
+                const BrokenSearch& broken) {
+  for (conformance::Assignment& one : target.setup.implementations) one.uri = in_own_process(one.uri);
+  const auto vocabulary = target.suite->vocabulary(*target.role, target.setup);
+  fuzz::SequenceFuzzResult result = broken.before;
+  const std::vector<conformance::Sequence> seeds = corpus.stored.sequences();
+  for (const auto& octets : broken.kept)
+    result.corpus.push_back(conformance::sequence_of_octets(octets, vocabulary));
+  result.corpus.insert(result.corpus.end(), seeds.begin() + static_cast<std::ptrdiff_t>(result.seeds_run),
+                       seeds.end());
+  result.is_found_in_seed = result.seeds_run < seeds.size();
+  session.terminal.print(fmt::format("the library {} in {}; this one in a process of its own:\n", broken.how,
+                                     found_in(result, corpus)));
+  const Interruption interruption(std::nullopt);
+  result.found = found_by_its_end(target, broken, vocabulary, interruption.token());
+  keep_document(session, target, corpus, result, {found_in(result, corpus), replay_command(path), "", false});
+  keep_corpus(session, target, corpus, result);
+  return keep_found(session, target, path, *result.found, found_in(result, corpus), interruption);
+}
+
+bool is_in_this_process(const SequenceFile& target) {
+  return std::ranges::any_of(target.setup.implementations, is_in_process, &conformance::Assignment::uri);
+}
+
+}  // namespace
+
+int fuzz_role(Session& session) {
+  SequenceFile target = searched_role(session);
+  const std::string path = found_path(session, target);
+  reports::check_writable(path);
+  const Settings& settings = session.settings;
+  if (settings.is_set("input")) return case_of_input(session, target, path);
+  if (settings.is_set("json")) reports::check_writable(settings.text("json"));
+  const CorpusOfCall corpus = corpus_of_call(session, target);
+  session.terminal.print(reports::run_header(identity_of(session, target.setup, 1), manifest_of(session, 1)));
+  if (!is_in_this_process(target)) return search_role(session, target, path, corpus, nullptr);
+  GuardedSearch guard;
+  const auto code = guard.run([&] { return search_role(session, target, path, corpus, &guard); });
+  return code ? *code : keep_broken(session, target, path, corpus, guard.broken());
 }
 
 }  // namespace fieldproof::cli

@@ -1,9 +1,12 @@
-// Subject: what `fieldproof fuzz ROLE` says about coverage that it does not see.
+// Subject: `fieldproof fuzz ROLE`, what it says of coverage that it does not see, and of a library that ends
+// its process.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "cli/probe/program_fixture.hpp"
+#include "harness/kernel/sanitized.hpp"
 
 namespace fieldproof::cli {
 namespace {
@@ -50,6 +53,75 @@ TEST_F(FuzzRole, APageShowsWhatWasFoundAndHowCoverageGrew) {
   EXPECT_HOLDS(page.out,
                "\n  pass          clean_fuzz.json: no finding in 60 sequences of fuzzing valve_bus/node\n");
   EXPECT_HOLDS(read("r.html"), "fieldproof replay found.json");
+}
+
+constexpr const char* kOfTheEnvironment = R"(
+#define _GNU_SOURCE
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+/* Ends the process when it is called for the 51st time there. */
+static void end_the_51st_time(void) {
+  const char* before = getenv("TIMES");
+  const int times = before == 0 ? 1 : atoi(before) + 1;
+  char text[16];
+  if (times > 50) abort();
+  snprintf(text, sizeof text, "%d", times);
+  setenv("TIMES", text, 1);
+}
+)";
+
+// A library of the example node that does something to the process when DATA1 is above F0h.
+class FuzzOfABrokenLibrary : public ProgramFixture {
+ protected:
+  Called fuzz_where_it(const std::string& does) {
+    const std::string source = std::string(kSourceFolder) + "/examples/valve_node/";
+    std::string node = reports::read_text_file(source + "valve_node.c");
+    const std::string place = "f[2] ^ f[3]";
+    const std::size_t at = node.find(place);
+    EXPECT_NE(at, std::string::npos);
+    node.replace(at, place.size(), "(f[3] > 0xF0 ? (" + does + ", f[2] ^ f[3]) : f[2] ^ f[3])");
+    write("node.c", kOfTheEnvironment + node);
+    Call compiler = prepared({"-O1", "-w", "-shared", "-fPIC", "-fsanitize-coverage=trace-pc", "-I",
+                              kSourceFolder, source + "plugin.c", "node.c", "-o", "node.so"},
+                             installed("cc"));
+    const Called compiled = compiler.run();
+    EXPECT_EQ(compiled.exit_code, 0) << compiled.err;
+    return call({"fuzz", "valve_bus/node", "--iut", "plugin:./node.so?in-process", "--cases", "3000",
+                 "--case", "found.json", "--json", "fuzz.json", "--corpus", "kept"});
+  }
+};
+
+TEST_F(FuzzOfABrokenLibrary, KeepsTheSequenceThatCrashesIt) {
+  const Called called = fuzz_where_it("raise(SIGSEGV)");
+  ASSERT_EQ(called.exit_code, 1) << called.out << called.err;
+  // A sanitizer ends the program in its own way.
+  if (!kernel::kIsSanitized) {
+    EXPECT_HOLDS(called.out, "the library was ended by signal 11 (Segmentation fault) in sequence ");
+  }
+  EXPECT_HOLDS(called.out, "fail: implementation_crashed");
+  EXPECT_EQ(json("fuzz.json").at("found").at("reason"), "implementation_crashed");
+  EXPECT_GT(json("fuzz.json").at("run"), 0);
+  EXPECT_FALSE(std::filesystem::is_empty(folder_ / "kept"));
+  expect_valid({"fuzz.json"}, "../../cli/fuzz");
+  const Called again = call({"replay", "found.json"});
+  EXPECT_EQ(again.exit_code, 1) << again.out << again.err;
+  EXPECT_HOLDS(again.out, "implementation_crashed");
+}
+
+// It is no pass either where it ends by itself, or never comes back in good order.
+TEST_F(FuzzOfABrokenLibrary, TakesAnEndOfTheProcessForACrash) {
+  const Called called = fuzz_where_it("exit(0)");
+  EXPECT_EQ(called.exit_code, 1) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "fail: implementation_crashed");
+}
+
+// What only happens after others before it cannot be shown alone, and is said so.
+TEST_F(FuzzOfABrokenLibrary, SaysWhatOneSequenceAloneDoesNotShow) {
+  const Called called = fuzz_where_it("end_the_51st_time()");
+  EXPECT_EQ(called.exit_code, 3) << called.out << called.err;
+  EXPECT_HOLDS(called.out, "the library ");
+  EXPECT_HOLDS(called.out, "not confirmed");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -46,6 +47,17 @@ struct Call {
            (signal_file.empty() || std::filesystem::exists(folder / signal_file));
   }
 };
+
+// The whole path of a program that the system has; empty where it has none.
+inline std::string installed(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::stringstream folders(std::string("/usr/bin:/bin:/usr/local/bin:") + (path == nullptr ? "" : path));
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (std::filesystem::exists(std::filesystem::path(folder) / name))
+      return (std::filesystem::path(folder) / name).string();
+  }
+  return {};
+}
 
 inline std::array<int, 2> make_pipe() {
   std::array<int, 2> ends{-1, -1};

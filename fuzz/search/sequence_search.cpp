@@ -116,7 +116,6 @@ class SearchRun {
   SequenceFuzzResult run() {
     run_seeds();
     while (!result_.found && result_.run < fuzz_.runs && !fuzz_.stop.stop_requested()) {
-      if (fuzz_.on_progress) fuzz_.on_progress(result_.run);
       run_one(pool_.next());
       if (!result_.found) ++result_.run;
     }
@@ -148,12 +147,14 @@ class SearchRun {
 
   void run_one(Octets octets) {
     const auto sequence = conformance::sequence_of_octets(octets, vocabulary_);
+    if (fuzz_.on_begin) fuzz_.on_begin(result_, octets);
     begin_coverage();
     conformance::Outcome outcome =
         conformance::run_sequence(*fuzz_.suite, *fuzz_.role, sequence, fuzz_.setup);
     RunCoverage coverage = take_coverage();
     const judge::Verdict verdict = outcome.result.verdict;
     if (verdict >= judge::Verdict::fail) {
+      if (fuzz_.on_found) fuzz_.on_found();
       result_.found = made_smaller(fuzz_, sequence, std::move(outcome));
       return;
     }
@@ -162,8 +163,10 @@ class SearchRun {
     result_.silent += has_passed && !outcome.result.has_driven ? 1 : 0;
     result_.inconclusive += verdict == judge::Verdict::inconclusive ? 1 : 0;
     result_.edges += coverage.new_edges;
-    if (coverage.new_features > 0 && !octets.empty())
+    if (coverage.new_features > 0 && !octets.empty()) {
+      if (fuzz_.on_kept) fuzz_.on_kept(octets);
       pool_.keep(std::move(octets), std::move(coverage.features));
+    }
     if (is_shown(++run_)) note_growth();
   }
 

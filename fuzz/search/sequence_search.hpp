@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -14,6 +15,8 @@
 // Without coverage of the implementation nothing is kept, and sequences are drawn as `check` draws them.
 namespace fieldproof::fuzz {
 
+struct SequenceFuzzResult;
+
 struct SequenceFuzz {
   const conformance::Suite* suite = nullptr;
   const conformance::SequenceRole* role = nullptr;
@@ -21,7 +24,11 @@ struct SequenceFuzz {
   std::vector<conformance::Sequence> seeds{};  // run before, and not counted in `runs`
   std::uint64_t runs = 1'000;
   std::stop_token stop{};
-  std::function<void(std::uint64_t)> on_progress{};  // before each run
+  // Before each run: what those before it showed, and its octets. Of each input that is kept. Of a finding,
+  // before it is made smaller.
+  std::function<void(const SequenceFuzzResult&, std::span<const std::uint8_t>)> on_begin{};
+  std::function<void(std::span<const std::uint8_t>)> on_kept{};
+  std::function<void()> on_found{};
 };
 
 // How far a search had come.
