@@ -37,7 +37,6 @@ const std::array<DerivedRow, 7> kDerivedRows{{
 namespace {
 
 constexpr std::array<std::size_t, 3> kRepetitions{2, 20, 130};
-constexpr std::size_t kManyRepetitions = 300;
 constexpr std::size_t kOrder = 3;          // words of which all orders occur
 constexpr std::size_t kNewOfWalk = 4;      // words that a walk has beyond those it shares with the one before
 constexpr std::size_t kTourLength = 5;     // commands with a setting
@@ -50,8 +49,11 @@ void add_once(std::vector<std::int64_t>& values, std::int64_t value) {
 // What makes sequences of one vocabulary.
 class Derivation {
  public:
-  Derivation(const SequenceVocabulary& vocabulary, kernel::Random random)
-      : vocabulary_(vocabulary), random_(random), source_(vocabulary, random.split("drawn").seed()) {
+  Derivation(const SequenceVocabulary& vocabulary, kernel::Random random, std::size_t repetitions)
+      : vocabulary_(vocabulary),
+        random_(random),
+        source_(vocabulary, random.split("drawn").seed()),
+        most_repetitions_(repetitions) {
     for (std::size_t word = 0; word < vocabulary.words.size(); ++word) {
       if (vocabulary.words[word].weight == 0) continue;
       words_.push_back(word);
@@ -330,7 +332,11 @@ class Derivation {
   Makers repetitions() const {
     Makers all;
     for (const SequenceCommand& command : letters_) {
-      for (const std::size_t count : kRepetitions) {
+      std::vector<std::size_t> counts(kRepetitions.begin(), kRepetitions.end());
+      // A thousand waits of an hour are more time than a bench has.
+      const bool is_usual = command == simple(command.word);
+      if (is_usual && most_repetitions_ > kManyRepetitions) counts.push_back(most_repetitions_);
+      for (const std::size_t count : counts) {
         all.push_back([this, n = all.size(), command, count] {
           return within(2 * n, std::vector<SequenceCommand>(count, command));
         });
@@ -418,6 +424,7 @@ class Derivation {
   const SequenceVocabulary& vocabulary_;
   kernel::Random random_;
   SequenceSource source_;
+  std::size_t most_repetitions_;
   std::uint64_t next_ = 100;  // of the source: the first ones have few commands
   std::vector<std::size_t> words_;
   std::vector<SequenceCommand> letters_;  // of each word a usual command and another
@@ -454,8 +461,8 @@ bool has_derived(DerivedKind kind, const SequenceVocabulary& vocabulary) {
 }
 
 DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
-                                   kernel::Random random) {
-  Derivation derivation(vocabulary, random.split("of_two"));
+                                   kernel::Random random, std::size_t repetitions) {
+  Derivation derivation(vocabulary, random.split("of_two"), repetitions);
   auto singles = derivation.singles(kind);
   DerivedSequences derived{.sequences = {}, .singles = singles.size()};
   if (singles.size() > most) {

@@ -48,10 +48,15 @@ struct DerivedSequences {
   std::size_t taken = 0;    // and how many of them are here
 };
 
+// How often a command comes at most. At full volume each usual one comes a thousand times once; others and
+// two in turn do not, for the time that takes.
+inline constexpr std::size_t kManyRepetitions = 300;
+inline constexpr std::size_t kMostRepetitions = 1'000;
+
 // All sequences about one thing when `most` is enough for them, else as many of them, drawn; what is left of
 // `most`, of settings of two fifths of it, is about two things: each two values of two numbers of a word
 // together, then what is drawn. The same stream gives the same sequences.
 DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
-                                   kernel::Random random);
+                                   kernel::Random random, std::size_t repetitions = kManyRepetitions);
 
 }  // namespace fieldproof::conformance

@@ -145,6 +145,25 @@ TEST(DerivedSequences, HaveEachTwoValuesOfTwoNumbersTogether) {
   }
 }
 
+TEST(DerivedSequences, GoOnWithTheSameForAThousandTimesWhereTheyAreAskedTo) {
+  const SequenceVocabulary vocabulary = two_words();
+  const auto longest_row = [&](std::size_t repetitions) {
+    const DerivedSequences derived =
+        derived_sequences(DerivedKind::repetitions, vocabulary, 30, kernel::Random(1), repetitions);
+    std::size_t longest = 0;
+    for (const Sequence& one : derived.sequences) {
+      std::size_t row = 0;
+      for (std::size_t n = 0; n < one.commands.size(); ++n) {
+        row = n > 0 && one.commands[n] == one.commands[n - 1] ? row + 1 : 1;
+        longest = std::max(longest, row);
+      }
+    }
+    return longest;
+  };
+  EXPECT_LT(longest_row(kManyRepetitions), kMostRepetitions);
+  EXPECT_GE(longest_row(kMostRepetitions), 1'000U);
+}
+
 TEST(DerivedSequences, AreTheSameForOneStreamAndOthersForAnother) {
   const SequenceVocabulary vocabulary = two_words();
   for (const DerivedRow& row : kDerivedRows) {
