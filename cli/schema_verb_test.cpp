@@ -23,7 +23,8 @@ TEST_F(SchemaVerb, NamesTheNearestOfAWrongName) {
   EXPECT_HOLDS(called.err, "there is no schema 'netwrok'; near to it are ");
   EXPECT_HOLDS(called.err, "interbus/network");
   EXPECT_HOLDS(call({"schema"}).out, "interbus/master\n");
-  for (const char* network : {"interbus/network", "valve_bus/network", "fieldbus_dll/network"}) {
+  for (const char* network :
+       {"interbus/network", "valve_bus/network", "fieldbus_dll/network", "token_bus/network"}) {
     EXPECT_HOLDS(call({"schema"}).out, std::string(network) + "\n");
     EXPECT_EQ(call({"schema", network}).exit_code, 0) << network;
   }

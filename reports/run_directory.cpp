@@ -162,6 +162,22 @@ void check_writable(const fs::path& path) {
   fs::remove(part_of(path), failure);
 }
 
+namespace {
+
+// What a link leads to is written, and the link stays; also where there is nothing yet.
+fs::path what_it_leads_to(fs::path path) {
+  constexpr int kMostLinks = 40;
+  std::error_code failure;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(path, failure); ++links) {
+    const fs::path target = fs::read_symlink(path, failure);
+    if (failure) break;
+    path = target.is_absolute() ? target : path.parent_path() / target;
+  }
+  return path;
+}
+
+}  // namespace
+
 void write_text_file(const fs::path& named, std::string_view content) {
   if (named.has_parent_path()) create_folders(named.parent_path());
   std::error_code failure;
@@ -169,9 +185,7 @@ void write_text_file(const fs::path& named, std::string_view content) {
     write_stream(named, content);
     return;
   }
-  // What a link leads to is written, and the link stays.
-  const fs::path linked = fs::is_symlink(named, failure) ? fs::weakly_canonical(named, failure) : named;
-  const fs::path& path = linked.empty() ? named : linked;
+  const fs::path path = what_it_leads_to(named);
   const fs::path beside = part_of(path);
   {
     std::ofstream file(beside, std::ios::binary | std::ios::trunc);

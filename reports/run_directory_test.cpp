@@ -114,6 +114,10 @@ TEST(WrittenFile, ALinkStaysAndAPipeIsWrittenTo) {
   write_text_file(link, "after");
   EXPECT_TRUE(fs::is_symlink(link));
   EXPECT_EQ(read_text_file(target), "after");
+  fs::remove(target);
+  write_text_file(link, "there is nothing yet");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(read_text_file(target), "there is nothing yet");
   const fs::path pipe = folder.path() / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);

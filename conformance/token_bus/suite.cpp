@@ -34,7 +34,7 @@ std::unique_ptr<Suite> token_bus_suite(SuiteGiven given) {
           .protocol = "token_bus",
           .roles = {token_station_row(), translator_row(), channel_manager_row()},
           .rules = {{"rules", &token_bus::kRulesTable}},
-          .schemas = {{"ring_network", token_bus::ring_network_schema}},
+          .schemas = {{"network", token_bus::ring_network_schema}},
           .why_no_network = "cases of the token bus make the ring that they need; leave out the network"},
       std::move(given));
 }

@@ -280,14 +280,14 @@ const SequenceRole& translator_sequence_role() {
        .tags = {},
        .catches = {}},
       translator_vocabulary(),
-      // Of cut requests and spoilt bits only that is looked at which the page says.
+      // Of cut requests and spoilt bits only that is looked at which the page says. Not what is drawn: of a
+      // reception that was cut off and one that lost bits after it the page leaves open what is right.
       {{DerivedKind::values, {"answer_of_28_symbols_at_most", "indication_other"}},
        {DerivedKind::faults, {"error_loses_the_lock", "indication_other"}},
        {DerivedKind::words, {"reset_enables_transmitter", "sent_other"}},
        {DerivedKind::states, {"disable_toggles", "indication_other"}},
        {DerivedKind::repetitions, {"zero_and_one_exchanged", "sent_other"}},
-       {DerivedKind::settings, {"transmitter_on_from_the_start", "sent_other"}},
-       {DerivedKind::drawn, {"line_leaks_into_loopback", "indication_other"}}},
+       {DerivedKind::settings, {"transmitter_on_from_the_start", "sent_other"}}},
       kCost};
   return role;
 }
