@@ -333,9 +333,10 @@ class Derivation {
     Makers all;
     for (const SequenceCommand& command : letters_) {
       std::vector<std::size_t> counts(kRepetitions.begin(), kRepetitions.end());
-      // A thousand waits of an hour are more time than a bench has.
+      // A thousand times an hour in which nothing is sent is more time than a bench has.
+      const bool is_sent = units_of(vocabulary_.words[command.word], command) > 0;
       const bool is_usual = command == simple(command.word);
-      if (is_usual && most_repetitions_ > kManyRepetitions) counts.push_back(most_repetitions_);
+      if (is_sent && is_usual && most_repetitions_ > kManyRepetitions) counts.push_back(most_repetitions_);
       for (const std::size_t count : counts) {
         all.push_back([this, n = all.size(), command, count] {
           return within(2 * n, std::vector<SequenceCommand>(count, command));

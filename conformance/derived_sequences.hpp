@@ -48,8 +48,8 @@ struct DerivedSequences {
   std::size_t taken = 0;    // and how many of them are here
 };
 
-// How often a command comes at most. At full volume each usual one comes a thousand times once; others and
-// two in turn do not, for the time that takes.
+// How often a command comes at most. At full volume each usual transmission comes a thousand times once;
+// others, waits and two in turn do not, for the time that takes.
 inline constexpr std::size_t kManyRepetitions = 300;
 inline constexpr std::size_t kMostRepetitions = 1'000;
 
