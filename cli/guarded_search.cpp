@@ -17,6 +17,8 @@
 #include <cstdio>
 #include <cstring>
 #include <new>
+#include <stdexcept>
+#include <string_view>
 
 #include "harness/iut/process.hpp"
 #include "harness/kernel/check.hpp"
@@ -74,13 +76,17 @@ std::string how_it_ended(int status, bool hangs) {
 
 // Plain memory only: whoever reads it may do so after a crash of whoever wrote it.
 struct GuardedSearch::Shared {
-  enum class End : std::uint8_t { none, code, error };
+  enum class End : std::uint8_t { none, code, error, failure };
   std::atomic<std::uint64_t> sequences{0};
   std::atomic<bool> is_searching{false};
   std::atomic<End> end{End::none};
   int code = 0;
   kernel::ErrorKind kind{};
   std::array<char, kLongestError> error{};
+  void keep(End how, std::string_view text) {
+    text.copy(error.data(), kLongestError - 1);
+    end = how;
+  }
 
   std::uint64_t run = 0;
   std::size_t seeds_run = 0;
@@ -142,9 +148,10 @@ void GuardedSearch::be_the_child(const std::function<int()>& work) {
     shared_->end = Shared::End::code;
   } catch (const kernel::Error& error) {
     shared_->kind = error.kind();
-    const std::string_view text = error.what();
-    text.copy(shared_->error.data(), kLongestError - 1);
-    shared_->end = Shared::End::error;
+    shared_->keep(Shared::End::error, error.what());
+  } catch (const std::exception& failure) {
+    // Ours, and no fault of the library.
+    shared_->keep(Shared::End::failure, failure.what());
   }
   std::fflush(nullptr);
   // Nothing that belongs to the parent is to be ended here.
@@ -154,11 +161,14 @@ void GuardedSearch::be_the_child(const std::function<int()>& work) {
 
 int GuardedSearch::status_of(int child) {
   using Clock = std::chrono::steady_clock;
+  // Only so that its end is seen at once.
   const iut::Descriptor ended(static_cast<int>(::syscall(SYS_pidfd_open, child, 0)));
   pollfd end{ended.number(), POLLIN, 0};
   std::uint64_t sequences = 0;
   auto since = Clock::now();
-  while (::poll(&end, 1, static_cast<int>(kLook.count())) <= 0) {
+  int status = 0;
+  while (::waitpid(child, &status, WNOHANG) == 0) {
+    ::poll(&end, 1, static_cast<int>(kLook.count()));
     const std::uint64_t now = shared_->sequences;
     if (now != sequences || !shared_->is_searching) {
       sequences = now;
@@ -167,9 +177,6 @@ int GuardedSearch::status_of(int child) {
       hangs_ = true;
       ::kill(child, SIGKILL);
     }
-  }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   return status;
 }
@@ -197,6 +204,7 @@ std::optional<int> GuardedSearch::run(const std::function<int()>& work) {
     status = status_of(child);
   }
   if (shared_->end == Shared::End::error) throw kernel::Error(shared_->kind, shared_->error.data());
+  if (shared_->end == Shared::End::failure) throw std::runtime_error(shared_->error.data());
   if (shared_->end == Shared::End::code) return shared_->code;
   read_what_was_left(status);
   return std::nullopt;

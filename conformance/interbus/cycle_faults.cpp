@@ -36,7 +36,7 @@ std::string text_of(const CycleFaults& faults) {
     if (place >= 0) said.push_back(fmt::format(fmt::runtime(text), place));
   if (faults.status_flag_flipped) said.emplace_back("the flag changed of the status telegram behind it");
   if (faults.trailing_telegram)
-    said.push_back(fmt::format("one more telegram {} bits behind the last", faults.trailing_gap_bits));
+    said.push_back(fmt::format("one more telegram {} bits after the last", faults.trailing_gap_bits));
   if (faults.stuck) said.push_back(fmt::format("the return line held at {}", *faults.stuck ? 1 : 0));
   return fmt::format("{}", fmt::join(said, "; "));
 }

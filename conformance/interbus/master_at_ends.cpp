@@ -17,8 +17,6 @@ using interbus::MasterStatus;
 using interbus::Rules;
 using interbus::SeenCycle;
 
-constexpr std::uint16_t kNoWord = 0x0003;  // the ID code of a station without a register
-
 // ---- telegrams ----
 
 constexpr std::array kLateGaps{6U, 9U, 12U};
@@ -81,21 +79,7 @@ void run_with_delay(RingScene& scene) {
   scene.judge.expect(bench.status().rejected_cycles == 0, "late_return_not_awaited",
                      "each cycle is waited for, and none is rejected",
                      fmt::format("{} are rejected", bench.status().rejected_cycles));
-  const Rules& rules = bench.rules();
-  constexpr std::int64_t kTelegramsOfNoWord = 6;
-  const kernel::Duration right =
-      kernel::levels_duration(kTelegramsOfNoWord * (13'000 + rules.telegram_gap_millibits),
-                              1'000 * rules.bit_rate) +
-      kernel::levels_duration(static_cast<std::int64_t>(kDelayed) *
-                                  (rules.forward_delay_half_bits + rules.return_delay_half_bits),
-                              2 * rules.bit_rate) +
-      of_cable + rules.software_time;
-  bench.ring().forget_statistics();
-  bench.run_data_cycles(scene.judge, 4);
-  const kernel::Duration seen = bench.ring().statistics().longest_cycle;
-  scene.judge.expect(right - right / 50 <= seen && seen <= right + right / 50, "cycle_time_off",
-                     fmt::format("a cycle time of {} within 2 %", kernel::describe(right)),
-                     kernel::describe(seen));
+  expect_cycle_time_without_words(bench, scene.judge, kDelayed, of_cable, "cycle_time_off");
   bench.rules() = usual;
 }
 

@@ -72,6 +72,22 @@ MasterStep rejected(std::string how, std::string reason, MakeFaults faults) {
           }};
 }
 
+void expect_cycle_time_without_words(MasterBench& bench, CaseJudge& judge, std::size_t stations,
+                                     kernel::Duration of_cable, std::string_view reason) {
+  constexpr std::int64_t kTelegrams = 6;  // loopback word, check and status
+  const interbus::Rules& rules = bench.rules();
+  const std::int64_t half_bits =
+      static_cast<std::int64_t>(stations) * (rules.forward_delay_half_bits + rules.return_delay_half_bits);
+  const kernel::Duration right =
+      kernel::levels_duration(kTelegrams * (13'000 + rules.telegram_gap_millibits), 1'000 * rules.bit_rate) +
+      kernel::levels_duration(half_bits, 2 * rules.bit_rate) + of_cable + rules.software_time;
+  bench.ring().forget_statistics();
+  bench.run_data_cycles(judge, 4);
+  const kernel::Duration seen = bench.ring().statistics().longest_cycle;
+  judge.expect(right - right / 50 <= seen && seen <= right + right / 50, reason,
+               fmt::format("a cycle time of {} within 2 %", kernel::describe(right)), kernel::describe(seen));
+}
+
 MasterStep configuration_error(std::string text, std::string reason) {
   return expected<RingScene>(text, [text, reason = std::move(reason)](RingScene& scene) {
     const auto status = scene.bench.status();

@@ -56,6 +56,12 @@ void expect_next_cycle(MasterBench& bench, CaseJudge& judge);
 using MakeFaults = std::function<void(RingScene&, interbus::CycleFaults&)>;
 MasterStep rejected(std::string how, std::string reason, MakeFaults faults);
 
+// Four more data cycles of so many stations without words take, within 2 %, what the delays of all stations
+// and of the cables (`of_cable`) make of them; else this is the reason.
+inline constexpr std::uint16_t kNoWord = 0x0003;  // the ID code of a station without a register
+void expect_cycle_time_without_words(MasterBench& bench, CaseJudge& judge, std::size_t stations,
+                                     kernel::Duration of_cable, std::string_view reason);
+
 // The master is no more in run, and names an error of configuration.
 MasterStep configuration_error(std::string text, std::string reason);
 

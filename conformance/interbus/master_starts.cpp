@@ -54,7 +54,7 @@ void expect_new_counts(MasterBench& bench, CaseJudge& judge) {
 
 constexpr std::size_t kManyStations = 30;
 Ring without_words(std::size_t stations) {
-  return interbus::line_of(stations, 0x0003, 0);
+  return interbus::line_of(stations, kNoWord, 0);
 }
 
 // The first one is shorter, then longer.
@@ -77,20 +77,8 @@ void start_on_second_ring(RingScene& scene) {
 }
 
 void expect_new_cycle_time(RingScene& scene) {
-  MasterBench& bench = scene.bench;
-  const interbus::Rules& rules = bench.rules();
-  constexpr std::int64_t kFrameTelegrams = 6;
-  const auto stations = static_cast<std::int64_t>(stations_in_turn(scene)[1]);
-  const kernel::Duration right =
-      kernel::levels_duration(kFrameTelegrams * (13'000 + rules.telegram_gap_millibits),
-                              1'000 * rules.bit_rate) +
-      kernel::levels_duration(stations * 3, rules.bit_rate) + rules.software_time;
-  bench.ring().forget_statistics();
-  bench.run_data_cycles(scene.judge, 4);
-  const kernel::Duration seen = bench.ring().statistics().longest_cycle;
-  scene.judge.expect(right - right / 50 <= seen && seen <= right + right / 50, "delay_of_another_ring",
-                     fmt::format("a cycle time of {} within 2 %", kernel::describe(right)),
-                     kernel::describe(seen));
+  expect_cycle_time_without_words(scene.bench, scene.judge, stations_in_turn(scene)[1], {},
+                                  "delay_of_another_ring");
 }
 
 // ---- bus stop ----

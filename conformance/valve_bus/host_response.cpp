@@ -36,7 +36,7 @@ constexpr unsigned kOtherPairs = 252;
 constexpr Rounds kPairRounds{kEqual.size() + kColumnPairs + kOtherPairs / 6,
                              kEqual.size() + kColumnPairs + kOtherPairs};
 
-// Behind the last round: that the host reported each of them, its round has shown.
+// After the last round: that the host reported each of them, its round has shown.
 void warn_of_reported_pairs(HostScene& scene) {
   if (scene.round + 1 != scene.bench.volume(kPairRounds.quick, kPairRounds.full)) return;
   warn_of_blind_check(scene.judge, kColumnPairs, kColumnPairs,
