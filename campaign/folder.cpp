@@ -24,12 +24,10 @@ constexpr const char* kSchema = "fieldproof/campaign_manifest/1";
 }
 
 std::string manifest_text(const Manifest& manifest) {
-  ordered_json inputs = ordered_json::array();
-  for (const InputFile& file : manifest.inputs) inputs.push_back({{"path", file.path}, {"hash", file.hash}});
   const ordered_json json = {{"schema", kSchema},
                              {"suite_version", manifest.suite_version},
                              {"plan_hash", manifest.plan_hash},
-                             {"inputs", std::move(inputs)},
+                             {"inputs", judge::json_of(manifest.inputs)},
                              {"jobs", manifest.jobs},
                              {"folder", manifest.folder},
                              {"started", manifest.started}};
@@ -44,12 +42,7 @@ Manifest manifest_from(const fs::path& path) {
     Manifest manifest;
     manifest.suite_version = object.required("suite_version").as_string();
     manifest.plan_hash = object.required("plan_hash").as_string();
-    for (const config::Value& input : object.required("inputs").as_array()) {
-      config::read_open_object(input, [&](config::ObjectReader& file) {
-        manifest.inputs.push_back(
-            {std::string(file.required("path").as_string()), std::string(file.required("hash").as_string())});
-      });
-    }
+    manifest.inputs = judge::input_files_from(object.required("inputs"));
     manifest.jobs = object.required("jobs").as_integer<std::uint64_t>();
     manifest.folder = object.required("folder").as_string();
     manifest.started = object.required("started").as_string();

@@ -21,11 +21,11 @@ namespace fieldproof::campaign {
 // What a campaign must be to be the same one, and what the occasion decided.
 struct Manifest {
   std::string suite_version;
-  std::string plan_hash;          // of what the plan says, not of how it is written
-  std::vector<InputFile> inputs;  // all files that jobs read
-  std::uint64_t jobs = 0;         // planned
-  std::string folder;             // in which it was begun: where relative paths lead
-  std::string started;            // UTC
+  std::string plan_hash;                 // of what the plan says, not of how it is written
+  std::vector<judge::InputFile> inputs;  // all files that jobs read
+  std::uint64_t jobs = 0;                // planned
+  std::string folder;                    // in which it was begun: where relative paths lead
+  std::string started;                   // UTC
 };
 
 class Folder {

@@ -36,7 +36,8 @@ std::string to_json(const Job& job) {
   for (const OutputFile& file : job.outputs)
     outputs.push_back({{"option", file.option}, {"name", file.name}});
   ordered_json inputs = ordered_json::array();
-  for (const InputFile& file : job.inputs) inputs.push_back({{"path", file.path}, {"hash", file.hash}});
+  for (const judge::InputFile& file : job.inputs)
+    inputs.push_back({{"path", file.path}, {"hash", file.hash}});
   return text_of({{"id", job.id},
                   {"verb", job.verb},
                   {"arguments", job.arguments},
@@ -84,10 +85,6 @@ JobResult result_from_json(std::string_view text) {
   for (const auto& file : json.at("files")) result.files.push_back({file.at("name"), file.at("text")});
   json.at("wall_time_ms").get_to(result.wall_time_ms);
   return result;
-}
-
-std::string hash_of(std::string_view content) {
-  return fmt::format("{:016x}", judge::check_of(content));
 }
 
 }  // namespace fieldproof::campaign

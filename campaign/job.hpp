@@ -11,13 +11,9 @@
 #include <string_view>
 #include <vector>
 
-namespace fieldproof::campaign {
+#include "harness/judge/input_file.hpp"
 
-// A file that the job reads, and what must be in it, wherever the job runs.
-struct InputFile {
-  std::string path;
-  std::string hash;  // hash_of(content)
-};
+namespace fieldproof::campaign {
 
 // A file that the job writes into its own folder.
 struct OutputFile {
@@ -37,8 +33,8 @@ struct Job {
   std::vector<std::string> arguments;  // after the verb
   std::vector<std::string> manner;     // further ones that decide nothing: "--quiet", "--jobs", "1"
   std::vector<OutputFile> outputs;
-  std::vector<InputFile> inputs;
-  std::chrono::milliseconds limit{};  // after which its process is killed
+  std::vector<judge::InputFile> inputs;  // and what must be in them, wherever the job runs
+  std::chrono::milliseconds limit{};     // after which its process is killed
 };
 
 struct KeptFile {
@@ -69,10 +65,5 @@ std::string to_json(const Job& job);
 std::string to_json(const JobResult& result);
 Job job_from_json(std::string_view text);
 JobResult result_from_json(std::string_view text);
-
-// 16 hexadecimal digits over a content.
-std::string hash_of(std::string_view content);
-// Of a program or library, in octets.
-inline constexpr std::size_t kLargestInput = std::size_t{1} << 30;
 
 }  // namespace fieldproof::campaign

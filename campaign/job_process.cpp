@@ -105,9 +105,9 @@ JobProcess::~JobProcess() {
 }
 
 void JobProcess::check_inputs() {
-  for (const InputFile& input : job_.inputs) {
+  for (const judge::InputFile& input : job_.inputs) {
     try {
-      if (hash_of(config::read_text(input.path, kLargestInput)) == input.hash) continue;
+      if (judge::hash_of(config::read_text(input.path, judge::kLargestInput)) == input.hash) continue;
       obstacle_ = fmt::format("{}: the file is another one here, or has changed since the campaign began",
                               input.path);
     } catch (const kernel::Error& error) {

@@ -12,7 +12,7 @@ TEST(JobTest, ComesBackFromItsText) {
                 .arguments = {"a/b/**", "--iut=exec:./x 'y z'"},
                 .manner = {"--quiet"},
                 .outputs = {{"--json", kDocument}},
-                .inputs = {{"network.json", hash_of("{}")}},
+                .inputs = {{"network.json", judge::hash_of("{}")}},
                 .limit = std::chrono::milliseconds(1500)};
   EXPECT_EQ(to_json(job_from_json(to_json(job))), to_json(job));
   EXPECT_EQ(command_of(job), R"(fieldproof run 'a/b/**' '--iut=exec:./x '\''y z'\''')");

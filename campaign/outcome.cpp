@@ -62,6 +62,17 @@ void read_fuzz(const ordered_json& document, Outcome& outcome) {
   if (left_out > 0) outcome.caveats.push_back(fmt::format("{} stored sequences were left out", left_out));
 }
 
+// Of all its roles together.
+std::string detected_in(const ordered_json& roles) {
+  std::uint64_t found = 0;
+  std::uint64_t of = 0;
+  for (const ordered_json& role : roles) {
+    found += role.at("found").get<std::uint64_t>();
+    of += role.at("of").get<std::uint64_t>();
+  }
+  return fmt::format("found {} of {}", found, of);
+}
+
 void read_document(const ordered_json& document, Outcome& outcome) {
   const std::string kind = document.value("schema", "");
   if (kind == "fieldproof/results/1") read_run(document, outcome);
@@ -71,6 +82,7 @@ void read_document(const ordered_json& document, Outcome& outcome) {
   if (kind == "fieldproof/matrix/1")
     outcome.headline =
         document.at("holes").empty() ? "complete" : fmt::format("{} holes", document.at("holes").size());
+  if (kind == "fieldproof/detection/1") outcome.headline = detected_in(document.at("roles"));
 }
 
 std::string last_line(const std::string& log) {

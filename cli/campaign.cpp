@@ -55,8 +55,8 @@ void check_same_campaign(const campaign::Folder& folder, const campaign::Manifes
     refuse_resumption("its plan says something else than this one");
   if (stored.suite_version != now.suite_version)
     refuse_resumption(fmt::format("the suite was {} and is {}", stored.suite_version, now.suite_version));
-  for (const campaign::InputFile& file : stored.inputs) {
-    const auto same = std::ranges::find(now.inputs, file.path, &campaign::InputFile::path);
+  for (const judge::InputFile& file : stored.inputs) {
+    const auto same = std::ranges::find(now.inputs, file.path, &judge::InputFile::path);
     if (same == now.inputs.end())
       refuse_resumption(fmt::format("{} is not there any more, seen from this folder; it was begun in {}",
                                     file.path, stored.folder));

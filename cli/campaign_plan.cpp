@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "cli/command_line.hpp"
+#include "cli/input_files.hpp"
 #include "cli/networks.hpp"
 #include "cli/sequence_corpus.hpp"
 #include "cli/sequence_file.hpp"
 #include "cli/settings.hpp"
-#include "harness/iut/process.hpp"
 #include "harness/kernel/error.hpp"
 
 namespace fieldproof::cli {
@@ -50,52 +50,6 @@ std::chrono::milliseconds time_of(const Value& value) {
   return *time;
 }
 
-// Of an implementation: its program or library, and what stands on its command line.
-std::vector<std::string> files_of_implementation(std::string_view uri) {
-  constexpr std::string_view kProcess = "exec:";
-  constexpr std::string_view kLibrary = "plugin:";
-  if (const auto at = uri.find(kProcess); at != std::string_view::npos)
-    return iut::words_of(std::string(uri.substr(at + kProcess.size())));
-  if (const auto at = uri.find(kLibrary); at != std::string_view::npos) {
-    const std::string_view path = uri.substr(at + kLibrary.size());
-    return {std::string(path.substr(0, path.find('?')))};
-  }
-  return {};
-}
-
-// The file that a word of the command line would name.
-std::optional<std::string> file_named_by(std::string_view word, const Option* option) {
-  if (option != nullptr) {
-    if (option->value_name.find("FILE") == std::string_view::npos) return std::nullopt;
-    word.remove_prefix(option->name.size() + 3);  // "--", "="
-  } else if (word.starts_with('@')) {
-    word.remove_prefix(1);
-  } else if (!word.ends_with(".json")) {
-    return std::nullopt;
-  }
-  return std::string(word);
-}
-
-bool is_file(const std::optional<std::string>& path) {
-  std::error_code failure;
-  return path && std::filesystem::is_regular_file(*path, failure);
-}
-
-// All files that are there and that a word of the command line names.
-std::vector<std::string> input_files_of(std::string_view word, const Option* option) {
-  std::vector<std::string> files;
-  if (option != nullptr && option->name == "corpus") {
-    const std::filesystem::path folder = word.substr(option->name.size() + 3);
-    for (const auto& file : corpus_files(folder)) files.push_back(file.string());
-  } else if (option != nullptr && option->name == "iut") {
-    files = files_of_implementation(word);
-  } else if (const auto file = file_named_by(word, option)) {
-    files.push_back(*file);
-  }
-  std::erase_if(files, [](const std::string& file) { return !is_file(file); });
-  return files;
-}
-
 // Values are read as what the table calls them.
 void check_values(const Settings& settings, const Option& option) {
   if (!settings.is_set(option.name) || option.kind != OptionKind::value) return;
@@ -110,10 +64,13 @@ void check_values(const Settings& settings, const Option& option) {
 void check_operands(const std::string& verb, const std::vector<std::string>& words,
                     const conformance::Catalogue& catalogue) {
   if (verb == "run") catalogue.select(words);
-  if (verb == "verify" && !(words.size() == 1 && is_file(file_named_by(words.front(), nullptr))))
+  if (verb == "verify" && !(words.size() == 1 && !input_files_of(words.front(), nullptr).empty()))
     catalogue.select(words);
-  if (verb == "matrix") catalogue.suite(words.front());
-  if (verb == "check" || verb == "fuzz") sequence_role_at(words.front(), catalogue);
+  // A matrix is one of a protocol; of sequences also one of a role.
+  const bool is_of_protocol = verb == "matrix" && words.front().find('/') == std::string::npos;
+  if (is_of_protocol) catalogue.suite(words.front());
+  if ((verb == "matrix" && !is_of_protocol) || verb == "check" || verb == "fuzz")
+    sequence_role_at(words.front(), catalogue);
   if (verb == "emc" || verb == "measure") network_entry_named(words.front(), verb);
 }
 
@@ -303,7 +260,7 @@ void CampaignPlan::note_inputs(const Row& row) {
       for (const std::string& word : words) {
         for (const std::string& file : input_files_of(word, axis.option)) {
           if (!hashes_.contains(file))
-            hashes_[file] = campaign::hash_of(config::read_text(file, campaign::kLargestInput));
+            hashes_[file] = judge::hash_of(config::read_text(file, judge::kLargestInput));
         }
       }
     }
@@ -311,7 +268,7 @@ void CampaignPlan::note_inputs(const Row& row) {
 }
 
 std::string CampaignPlan::hash() const {
-  return campaign::hash_of(nlohmann::ordered_json::parse(text(), nullptr, true, true).dump());
+  return judge::hash_of(nlohmann::ordered_json::parse(text(), nullptr, true, true).dump());
 }
 
 std::uint64_t CampaignPlan::count() const {
@@ -319,8 +276,8 @@ std::uint64_t CampaignPlan::count() const {
   return most_jobs_ ? std::min(all, *most_jobs_) : all;
 }
 
-std::vector<campaign::InputFile> CampaignPlan::inputs() const {
-  std::vector<campaign::InputFile> files;
+std::vector<judge::InputFile> CampaignPlan::inputs() const {
+  std::vector<judge::InputFile> files;
   for (const auto& [path, hash] : hashes_) files.push_back({path, hash});
   return files;
 }

@@ -41,7 +41,7 @@ class CampaignPlan {
   std::uint64_t count() const;  // jobs, after `budget.jobs`
   campaign::Job job(std::uint64_t id) const;
   // All files that its jobs read.
-  std::vector<campaign::InputFile> inputs() const;
+  std::vector<judge::InputFile> inputs() const;
 
   std::optional<std::chrono::milliseconds> time() const { return time_; }
   const std::optional<campaign::ConfidenceGoal>& confidence() const { return confidence_; }

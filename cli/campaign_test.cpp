@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -289,6 +290,20 @@ TEST_F(CampaignVerb, IsWatchedFromElsewhereUntilItEnds) {
   const Called left = campaign({"--watch", "seen"});
   EXPECT_EQ(left.exit_code, 2);
   EXPECT_HOLDS(left.out, "nobody works on it any more; go on: fieldproof campaign --resume seen\n");
+}
+
+TEST_F(CampaignVerb, HasTheMatrixOfSequencesOfARole) {
+  write("kills.json", R"({"jobs": [{"verb": "matrix", "of": "valve_bus/node", "sequences": true, "seeds": 1,
+    "commands": 20, "seed": {"from": 1, "count": 2}}]})");
+  const Called called = campaign({"kills.json", "--out", "kills"});
+  EXPECT_EQ(called.exit_code, 1) << called.err;
+  const nlohmann::json jobs = nlohmann::json::parse(read("kills/campaign.json"))["jobs"];
+  ASSERT_EQ(jobs.size(), 2U);
+  for (const auto& job : jobs) EXPECT_EQ(job["headline"].get<std::string>().find("found "), 0U) << job;
+  write("no.json", R"({"jobs": [{"verb": "matrix", "of": "valve_bus/nobody", "sequences": true}]})");
+  const Called refused = campaign({"no.json", "--out", "no"});
+  EXPECT_EQ(refused.exit_code, 65);
+  EXPECT_HOLDS(refused.err, "valve_bus/nobody");
 }
 
 TEST_F(CampaignVerb, HasNoDefaultFolderTwice) {

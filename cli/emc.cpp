@@ -28,6 +28,7 @@
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "conformance/ordered_work.hpp"
+#include "emc/burst_clamp.hpp"
 #include "emc/residual/residual_error.hpp"
 #include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/error.hpp"
@@ -123,6 +124,7 @@ class Campaign {
     done_.is_complete = delivered == planned_.size() && done_.tests.size() == planned_.size();
     add_worst_probe(response);
     add_to_search();
+    add_pulse(response);
     if (const std::string hint = emc_hint(done_); !hint.empty())
       session_.terminal.print(fmt::format("hint: {}\n", hint));
     if (!done_.has_bursts || !session_.settings.is_set("sensitivity") || !done_.is_complete) return;
@@ -173,7 +175,8 @@ class Campaign {
     try {
       const std::unique_ptr<network::Network> network = test.network->make(test.seed);
       for (const network::Place& place : network->places()) {
-        ran.places.push_back({place.name, place.is_exposed, std::string(place.why_not)});
+        ran.places.push_back({place.name, place.is_exposed, std::string(place.why_not),
+                              kernel::kSecond / place.level_rate, emc::sampling_of(place)});
       }
       ran.recovery = network->recovery_limit();
       ran.acceptance = network->acceptance();
@@ -294,6 +297,16 @@ class Campaign {
       return is_whole ? std::optional(std::move(results)) : std::nullopt;
     };
     return made;
+  }
+
+  // Of the tests with the highest voltage the first.
+  void add_pulse(const emc::LineResponse& response) {
+    const auto exposed = std::ranges::find(done_.places, true, &EmcPlace::is_exposed);
+    const auto highest = std::ranges::max_element(
+        done_.tests, {}, [](const EmcTest& test) { return test.level.open_circuit_volts(); });
+    if (!done_.has_bursts || exposed == done_.places.end() || highest == done_.tests.end()) return;
+    done_.pulse =
+        EmcPulse{emc::picture_of(response, highest->level.open_circuit_volts(), highest->polarity), *exposed};
   }
 
   void describe(const Ran& ran) {

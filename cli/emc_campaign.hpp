@@ -11,6 +11,7 @@
 #include "emc/frame_residual.hpp"
 #include "emc/immunity.hpp"
 #include "emc/profile.hpp"
+#include "emc/pulse_picture.hpp"
 
 namespace fieldproof::cli {
 
@@ -55,6 +56,14 @@ struct EmcPlace {
   std::string name;
   bool is_exposed = true;
   std::string why_not;
+  kernel::Duration level{};  // that its senders drive
+  line::Sampling sampling{};
+};
+
+// A pulse of the highest level at a receiver that bursts reach.
+struct EmcPulse {
+  emc::PulsePicture picture;
+  EmcPlace place;
 };
 
 struct EmcCampaign {
@@ -78,6 +87,7 @@ struct EmcCampaign {
   bool has_bursts = true;  // else channels of the textbooks
   std::optional<EmcSearch> search;
   std::optional<EmcSensitivity> sensitivity;
+  std::optional<EmcPulse> pulse;
 };
 
 // The errors of all tests together, and how much a count of wrong words can still hide.

@@ -1,5 +1,6 @@
 #include "cli/emc_json.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -235,6 +236,44 @@ ordered_json acceptance_json(const EmcCampaign& campaign) {
   return numbers;
 }
 
+double nanoseconds(kernel::Duration time) {
+  return static_cast<double>(time.count()) / static_cast<double>(kernel::kNanosecond.count());
+}
+
+// As many digits as a chart shows.
+ordered_json volts_json(const std::vector<double>& volts) {
+  constexpr double kParts = 1'000;
+  ordered_json list = ordered_json::array();
+  for (const double one : volts) list.push_back(std::round(kParts * one) / kParts);
+  return list;
+}
+
+ordered_json pulse_json(const EmcPulse& pulse, const emc::Coupling& coupling) {
+  const emc::PulsePicture& picture = pulse.picture;
+  ordered_json wrong = ordered_json::array();
+  for (const auto& intervals : picture.wrong.of_level) {
+    ordered_json of_level = ordered_json::array();
+    for (const emc::Interval& one : intervals)
+      of_level.push_back({nanoseconds(one.from), nanoseconds(one.to)});
+    wrong.push_back(std::move(of_level));
+  }
+  const line::Sampling sampling = pulse.place.sampling;
+  ordered_json sampled = ordered_json::array();
+  for (unsigned n = sampling.first(); n <= sampling.last(); ++n) sampled.push_back(n);
+  return {{"open_circuit_volts", picture.open_circuit_volts},
+          {"polarity", emc::text_of(picture.polarity)},
+          {"receiver", pulse.place.name},
+          {"level_ns", nanoseconds(pulse.place.level)},
+          {"sampled_sixteenths", std::move(sampled)},
+          {"bit_v", coupling.bit_v},
+          {"threshold_v", coupling.threshold_v},
+          {"hysteresis_mv", coupling.hysteresis_mv},
+          {"step_ns", nanoseconds(picture.step)},
+          {"generator_v", volts_json(picture.generator_v)},
+          {"receiver_v", volts_json(picture.receiver_v)},
+          {"wrong_ns", std::move(wrong)}};
+}
+
 }  // namespace
 
 std::string emc_json(const EmcCampaign& campaign) {
@@ -280,6 +319,7 @@ std::string emc_json(const EmcCampaign& campaign) {
                              {"accepted_wrong", total.counts.accepted_wrong()},
                              {"balance", balance_json(total.counts)},
                              {"upper_bound_of_share", total.upper_bound_of_share}}}};
+  if (campaign.pulse) document["pulse"] = pulse_json(*campaign.pulse, campaign.profile.coupling);
   if (campaign.search) document["thresholds"] = search_json(*campaign.search);
   if (std::string hint = emc_hint(campaign); !hint.empty()) document["hint"] = std::move(hint);
   if (campaign.sensitivity) document["sensitivity"] = sensitivity_json(*campaign.sensitivity);

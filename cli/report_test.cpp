@@ -139,6 +139,44 @@ TEST_F(ReportVerb, ADocumentHoldsItsDate) {
 }
 
 // A campaign by its file or by its folder, beside the fit of a laboratory's counts.
+// With what was tested: a later one can be told from it.
+TEST_F(ReportVerb, ARunAndADocumentHoldTheHashesOfTheirFiles) {
+  const auto inputs_of = [&](const std::string& file) {
+    const nlohmann::json json = nlohmann::json::parse(read(file));
+    std::map<std::string, std::string> inputs;
+    for (const auto& one : json.contains("run") ? json["run"]["inputs"] : json["inputs"])
+      inputs[one["path"]] = one["hash"];
+    return inputs;
+  };
+  const std::string none = R"({"rules": []})";
+  write("plan.json", none);
+  const std::vector<std::string> words = {"run",      "valve_bus/node/read/is_answered",
+                                          "--volume", "quick",
+                                          "--faults", "plan.json",
+                                          "--iut",    "exec:sh ./node.sh"};
+  std::map<std::string, std::string> before;
+  for (const char* const script : {"exit 0\n", "exit 1\n"}) {
+    write("node.sh", script);
+    std::vector<std::string> arguments = words;
+    const std::string out = fmt::format("run{}", before.size());
+    arguments.insert(arguments.end(), {"--out", out});
+    call(arguments);
+    const auto inputs = inputs_of(out + "/results.json");
+    ASSERT_EQ(inputs.size(), 2U) << read(out + "/results.json");
+    EXPECT_EQ(inputs.at("plan.json").size(), 16U);
+    if (before.empty())
+      before = inputs;
+    else
+      EXPECT_NE(inputs.at("node.sh"), before.at("node.sh"));
+    EXPECT_EQ(inputs.at("plan.json"), before.at("plan.json"));
+  }
+  const Called called = call(
+      {"measure", "valve_bus", "--duration", "1s", "--iut", "node@1=exec:sh ./node.sh", "--json", "m.json"});
+  EXPECT_EQ(called.exit_code, 1) << called.err;
+  const auto of_document = inputs_of("m.json");
+  EXPECT_EQ(of_document.size(), 1U);
+}
+
 TEST_F(ReportVerb, ShowsCampaignsAndFits) {
   write("plan.json", R"({"title": "two seeds", "jobs": [{"verb": "run", "of": "interbus/slave/frame_check/**",
       "iut": "mutant:latches_in_spite_of_own_error", "volume": "quick", "seed": {"from": 1, "count": 2}}]})");

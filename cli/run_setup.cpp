@@ -11,6 +11,7 @@
 
 #include "cli/build_info.hpp"
 #include "cli/implementations.hpp"
+#include "cli/input_files.hpp"
 #include "cli/pics_file.hpp"
 #include "cli/pics_roles.hpp"
 #include "harness/kernel/host_name.hpp"
@@ -35,12 +36,6 @@ class Hash {
  private:
   std::uint64_t value_ = 0xCBF29CE484222325;
 };
-
-std::string hash_text(std::string_view content) {
-  Hash hash;
-  hash.add(content);
-  return fmt::format("{:016x}", hash.value());
-}
 
 }  // namespace
 
@@ -122,7 +117,7 @@ std::string suite_version(const conformance::Catalogue& catalogue) {
 
 std::string file_hash(const std::string& file) {
   if (file.empty()) return {};
-  return hash_text(reports::read_text_file(file));
+  return judge::hash_of(reports::read_text_file(file));
 }
 
 reports::RunIdentity identity_of(const Session& session, const conformance::Setup& setup,
@@ -134,7 +129,7 @@ reports::RunIdentity identity_of(const Session& session, const conformance::Setu
   identity.volume = conformance::name(setup.volume);
   identity.plan_hash = file_hash(setup.plan_file);
   identity.network_hash = file_hash(setup.network_file);
-  if (setup.pics) identity.pics_hash = hash_text(pics_text(*setup.pics));
+  if (setup.pics) identity.pics_hash = judge::hash_of(pics_text(*setup.pics));
   for (const auto& suite : session.catalogue().suites()) {
     for (std::string& caveat : suite->caveats(setup)) {
       if (std::ranges::find(identity.caveats, caveat) == identity.caveats.end())
@@ -147,6 +142,7 @@ reports::RunIdentity identity_of(const Session& session, const conformance::Setu
   for (const conformance::Assignment& assignment : setup.implementations) {
     identity.implementations.push_back({assignment.role, assignment.position, assignment.uri});
   }
+  identity.inputs = input_files_of(session);
   identity.reproduce_options = session.settings.reproduce_options();
   identity.selected = selected;
   return identity;

@@ -91,7 +91,7 @@ void write_corpus(const fs::path& folder, const std::vector<conformance::Sequenc
   std::set<fs::path> written;
   for (const conformance::Sequence& sequence : sequences) {
     const std::string text = corpus_text(sequence, role, vocabulary);
-    const fs::path file = folder / (campaign::hash_of(text) + ".json");
+    const fs::path file = folder / (judge::hash_of(text) + ".json");
     std::error_code failure;
     if (written.insert(file).second && !fs::exists(file, failure)) reports::write_text_file(file, text);
   }

@@ -339,16 +339,22 @@ std::string Settings::as_file() const {
   return file.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-std::string Settings::reproduce_options() const {
-  std::vector<std::string> words;
+std::vector<std::pair<const Option*, const std::vector<std::string>*>> Settings::deciding() const {
+  std::vector<std::pair<const Option*, const std::vector<std::string>*>> options_with_values;
   for (const Option& option : options()) {
     if (!option.decides_outcome || !is_known_to(option, verb_)) continue;
     const Setting& own = setting(option.name);
-    // The seed always: the default may change, the result that was printed does not.
-    if (own.origin == Origin::fallback && option.name != "seed") continue;
-    for (const std::string& value : own.values) {
-      words.push_back(fmt::format("--{} {}", option.name, reports::shell_quoted(value)));
-    }
+    if (own.origin != Origin::fallback || option.name == "seed")
+      options_with_values.emplace_back(&option, &own.values);
+  }
+  return options_with_values;
+}
+
+std::string Settings::reproduce_options() const {
+  std::vector<std::string> words;
+  for (const auto& [option, values] : deciding()) {
+    for (const std::string& value : *values)
+      words.push_back(fmt::format("--{} {}", option->name, reports::shell_quoted(value)));
   }
   return fmt::format("{}", fmt::join(words, " "));
 }

@@ -74,7 +74,10 @@ class Settings {
   std::string describe() const;
   // The values that are no default, as a configuration file that gives them again; paths are absolute.
   std::string as_file() const;
-  // The options that decide the outcome, quoted for a shell: "--seed 7 --iut slave=mutant:x".
+  // The options that decide the outcome and are no default, with their values; the seed always: the default
+  // may change, the result that was printed does not.
+  std::vector<std::pair<const Option*, const std::vector<std::string>*>> deciding() const;
+  // The same, quoted for a shell: "--seed 7 --iut slave=mutant:x".
   std::string reproduce_options() const;
 
  private:

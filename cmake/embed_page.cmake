@@ -5,7 +5,7 @@
 # and so does the word export. The page's Content-Security-Policy names script and styles by their hashes.
 
 set(page_modules
-  dom format data later table charts time_line_model time_line case_detail case_table summary course burst_course burst_shares timing heat_map thresholds immunity fit fuzz campaign history comparison residual publication
+  dom format data later table charts time_line_model time_line case_detail case_table summary course burst_course burst_shares timing heat_map thresholds pulse immunity fit fuzz campaign history comparison residual publication
   matrix detection coverage measured_bursts cover appendix page)
 
 # The octets of a hexadecimal number as base64.

@@ -81,6 +81,7 @@ class DerivedResult {
       measure("about one thing", given_.derived.taken);
       measure("about one thing there are", given_.derived.singles);
     }
+    for (const auto& [name, count] : given_.derived.counts) measure(name, count);
     return std::move(worst_);
   }
 

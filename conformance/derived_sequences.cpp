@@ -10,7 +10,7 @@
 
 namespace fieldproof::conformance {
 
-const std::array<DerivedRow, 7> kDerivedRows{{
+const std::array<DerivedRow, 8> kDerivedRows{{
     {DerivedKind::values, "each_number_at_its_boundaries",
      "Each number of each command at both ends, beside them, at each power of two and at what the rules "
      "name, "
@@ -22,6 +22,13 @@ const std::array<DerivedRow, 7> kDerivedRows{{
      "Each three commands, usual and unusual, one after the other."},
     {DerivedKind::states, "each_command_in_each_state",
      "Each command, with each of its choices, in each state into which commands bring a station.", 1'500},
+    {DerivedKind::walks, "each_transition_of_its_states",
+     "Each command in each state of the reference, found by these commands, then what tells where that leads "
+     "from "
+     "all other states. Where all walks are taken and the states are all there are: no machine of at most so "
+     "many "
+     "states (at full volume: one more) that answers to these commands at once does anything else.",
+     1'900, 20'000},
     {DerivedKind::repetitions, "the_same_many_times",
      "Each command again and again, two commands in turn, and others after them.", 30, 350},
     {DerivedKind::settings, "each_setting_at_its_ends",
@@ -78,6 +85,7 @@ class Derivation {
         return repetitions();
       case DerivedKind::settings:
         return settings();
+      case DerivedKind::walks:  // of the reference, not of the vocabulary alone
       case DerivedKind::drawn:  // nothing of it is about one thing
         return {};
     }
@@ -118,6 +126,8 @@ class Derivation {
         return in_turn();
       case DerivedKind::settings:
         return two_settings();
+      case DerivedKind::walks:
+        return {};
       case DerivedKind::drawn:
         return next_drawn();
     }
@@ -461,21 +471,26 @@ bool has_derived(DerivedKind kind, const SequenceVocabulary& vocabulary) {
   });
 }
 
+DerivedSequences taken_of(std::vector<std::function<Sequence()>> makers, std::size_t most,
+                          kernel::Random random) {
+  DerivedSequences derived{.sequences = {}, .singles = makers.size()};
+  if (makers.size() > most) {
+    random.split("singles").shuffle(makers);
+    makers.resize(most);
+  }
+  derived.taken = makers.size();
+  for (const auto& make : makers) derived.sequences.push_back(make());
+  return derived;
+}
+
 DerivedSequences derived_sequences(DerivedKind kind, const SequenceVocabulary& vocabulary, std::size_t most,
                                    kernel::Random random, std::size_t repetitions) {
   Derivation derivation(vocabulary, random.split("of_two"), repetitions);
-  auto singles = derivation.singles(kind);
-  DerivedSequences derived{.sequences = {}, .singles = singles.size()};
-  if (singles.size() > most) {
-    random.split("singles").shuffle(singles);
-    singles.resize(most);
-  }
-  derived.taken = singles.size();
-  for (const auto& make : singles) derived.sequences.push_back(make());
-  if (kind == DerivedKind::values && singles.size() < most) {
+  DerivedSequences derived = taken_of(derivation.singles(kind), most, random);
+  if (kind == DerivedKind::values && derived.taken < most) {
     auto pairs = derivation.pairs();
     random.split("pairs").shuffle(pairs);
-    pairs.resize(std::min(pairs.size(), most - singles.size()));
+    pairs.resize(std::min(pairs.size(), most - derived.taken));
     for (const auto& make : pairs) derived.sequences.push_back(make());
   }
   // Two settings at once find little that one does not, and slow rates among them cost the most.

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "conformance/sequence.hpp"
@@ -21,7 +23,7 @@
 // shows what it has left behind.
 namespace fieldproof::conformance {
 
-enum class DerivedKind : std::uint8_t { values, faults, words, states, repetitions, settings, drawn };
+enum class DerivedKind : std::uint8_t { values, faults, words, states, walks, repetitions, settings, drawn };
 
 struct DerivedRow {
   DerivedKind kind;
@@ -30,7 +32,7 @@ struct DerivedRow {
   std::size_t quick = 400;  // sequences of it at this volume
   std::size_t full = 5'000;
 };
-extern const std::array<DerivedRow, 7> kDerivedRows;
+extern const std::array<DerivedRow, 8> kDerivedRows;
 
 // What may be chosen for a number of a command: both ends, their neighbours, powers of two and their
 // neighbours, and what the vocabulary names; each once, what is simple first.
@@ -46,12 +48,18 @@ struct DerivedSequences {
   std::vector<Sequence> sequences;
   std::size_t singles = 0;  // one thing at a time: how many there are (of what is drawn: 0),
   std::size_t taken = 0;    // and how many of them are here
+  // What else there is to count, for the report.
+  std::vector<std::pair<std::string, std::size_t>> counts{};
 };
 
 // How often a command comes at most. At full volume each usual transmission comes a thousand times once;
 // others, waits and two in turn do not, for the time that takes.
 inline constexpr std::size_t kManyRepetitions = 300;
 inline constexpr std::size_t kMostRepetitions = 1'000;
+
+// `makers` of them, as many as `most` allows, drawn.
+DerivedSequences taken_of(std::vector<std::function<Sequence()>> makers, std::size_t most,
+                          kernel::Random random);
 
 // All sequences about one thing when `most` is enough for them, else as many of them, drawn; what is left of
 // `most`, of settings of two fifths of it, is about two things: each two values of two numbers of a word

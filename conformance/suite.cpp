@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "conformance/derived_cases.hpp"
+#include "conformance/reference_walks.hpp"
 #include "conformance/running_case.hpp"
 #include "conformance/stressed_receiver.hpp"
 #include "harness/kernel/check.hpp"
@@ -104,11 +105,13 @@ SequenceVocabulary Suite::vocabulary(const SequenceRole& role, const Setup& setu
 
 Outcome Suite::run_sequence(const SequenceRole& role, const Sequence& sequence, const Setup& setup) const {
   const RoleRow& row = row_of(role.test_case);
-  FIELDPROOF_CHECK(bool(row.sequences),
+  const bool is_of_more = row.more_sequences && row.more_sequences->role.test_case.id == role.test_case.id;
+  const std::optional<RoleSequences>& sequences = is_of_more ? row.more_sequences : row.sequences;
+  FIELDPROOF_CHECK(bool(sequences),
                    "a suite runs sequences of the roles that it names: " + role.test_case.id);
   RunningCase run = begin(role.test_case, setup);
   run.use_settings(sequence.settings);
-  Outcome outcome{row.sequences->run(sequence, run), {}};
+  Outcome outcome{sequences->run(sequence, run), {}};
   run.keep(outcome);
   outcome.happens_once = run.is_on_real_line();
   return outcome;
@@ -124,9 +127,11 @@ judge::CaseResult Suite::run_derived(const RoleRow& row, DerivedKind kind, Runni
           ? kDerivedOnRealLine
           : run.setup().sequences.value_or(derived_count(kind, run.setup().volume, sequences.role.cost));
   const bool has_time = run.setup().volume == Volume::full && !run.is_on_real_line();
+  const kernel::Random random = kernel::Random(run.setup().seed).split("derived");
   const DerivedSequences derived =
-      derived_sequences(kind, vocabulary, most, kernel::Random(run.setup().seed).split("derived"),
-                        has_time ? kMostRepetitions : kManyRepetitions);
+      kind == DerivedKind::walks
+          ? walk_sequences(*this, sequences.role, has_time ? Volume::full : Volume::quick, most, random)
+          : derived_sequences(kind, vocabulary, most, random, has_time ? kMostRepetitions : kManyRepetitions);
   return run_derived_case({.test_case = run.test_case(),
                            .derived = derived,
                            .vocabulary = vocabulary,

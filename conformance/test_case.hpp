@@ -147,6 +147,9 @@ struct SequenceRole {
   std::vector<DerivedCatch> derived_catches{};
   // How many times as long as usual a sequence takes: a quick run has so many fewer derived ones.
   std::size_t cost = 1;
+  // How many states of its reference walks look for. A station that acts by itself is in another state at
+  // each instant, and has more than can be visited.
+  std::size_t most_states = 60;
 };
 
 }  // namespace fieldproof::conformance

@@ -11,7 +11,7 @@
 namespace fieldproof::emc {
 namespace {
 
-using SharedResponse = ComputedOnce<LineResponse>;
+using SharedResponse = kernel::ComputedOnce<LineResponse>;
 
 std::unique_ptr<BurstChannel> channel_at(const fault::StressPlace& place, BurstSchedule schedule,
                                          WrongOutput wrong) {
@@ -46,9 +46,9 @@ fault::Stress stress(const std::shared_ptr<SharedResponse>& response, const Burs
 
 }  // namespace
 
-std::shared_ptr<ComputedOnce<WrongOutput>> wrong_output_of(const Profile& profile,
-                                                           const BurstSettings& settings) {
-  return std::make_shared<ComputedOnce<WrongOutput>>([coupling = profile.coupling, settings] {
+std::shared_ptr<kernel::ComputedOnce<WrongOutput>> wrong_output_of(const Profile& profile,
+                                                                   const BurstSettings& settings) {
+  return std::make_shared<kernel::ComputedOnce<WrongOutput>>([coupling = profile.coupling, settings] {
     return LineResponse(coupling).wrong_output(settings.level.open_circuit_volts(), settings.polarity);
   });
 }

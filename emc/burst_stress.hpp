@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "emc/computed_once.hpp"
 #include "emc/coupling.hpp"
 #include "emc/generator.hpp"
 #include "emc/profile.hpp"
 #include "harness/fault/stress.hpp"
+#include "harness/kernel/computed_once.hpp"
 
 // Bursts of IEC 61000-4-4 at receivers that are not declared: every transmission that is hit reaches the
 // receiver with its wrong times at the fine rate, and the receiver itself samples. As stresses for test cases
@@ -21,8 +21,8 @@
 namespace fieldproof::emc {
 
 // When the output of a receiver is wrong under these bursts: the same at all receivers.
-std::shared_ptr<ComputedOnce<WrongOutput>> wrong_output_of(const Profile& profile,
-                                                           const BurstSettings& settings);
+std::shared_ptr<kernel::ComputedOnce<WrongOutput>> wrong_output_of(const Profile& profile,
+                                                                   const BurstSettings& settings);
 
 using MakeBursts = std::function<std::unique_ptr<fault::Channel>(const fault::StressPlace&)>;
 

@@ -13,7 +13,6 @@ namespace fieldproof::emc {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
-constexpr kernel::Duration kSolverStep{100};
 constexpr double kStepNs = 0.1;
 constexpr double kNetworkPf = 33'000;
 // So many of the longest time constant, after which 0.02 per mille of a disturbance is left.
@@ -247,6 +246,15 @@ double LineResponse::differential_peak() const {
   return peak_of(differential_);
 }
 
+std::vector<double> LineResponse::receiver_volts(double open_circuit_volts, Polarity polarity) const {
+  const double factor = static_cast<double>(polarity) * open_circuit_volts *
+                        voltage_factor(coupling_.shield_db) * voltage_factor(coupling_.imbalance_db);
+  std::vector<double> volts;
+  volts.reserve(differential_.size());
+  for (const double one : differential_) volts.push_back(factor * one);
+  return volts;
+}
+
 WrongOutput LineResponse::wrong_output(double open_circuit_volts, Polarity polarity) const {
   const double sign = static_cast<double>(polarity);
   const double shielded = sign * open_circuit_volts * voltage_factor(coupling_.shield_db);
@@ -260,9 +268,9 @@ WrongOutput LineResponse::wrong_output(double open_circuit_volts, Polarity polar
     const auto follow = [&](double differential_now, double common_mode_now) {
       const bool is_wrong = receiver.decide(differential_now, common_mode_now) != level;
       if (is_wrong && !was_wrong) intervals.push_back({now, now});
-      if (is_wrong) intervals.back().to = now + kSolverStep;
+      if (is_wrong) intervals.back().to = now + kStep;
       was_wrong = is_wrong;
-      now += kSolverStep;
+      now += kStep;
     };
     for (std::size_t n = 0; n < common_mode_.size(); ++n) {
       follow(differential * differential_[n], shielded * common_mode_[n]);

@@ -108,6 +108,10 @@ class LineResponse {
   double common_mode_peak() const;                       // at the cable, before the shield
   double differential_peak() const;                      // filtered, before shield and imbalance
 
+  // What is added at the receiver's input, filtered, at multiples of kStep from the begin of the pulse on.
+  std::vector<double> receiver_volts(double open_circuit_volts, Polarity polarity) const;
+  static constexpr kernel::Duration kStep{100};
+
   WrongOutput wrong_output(double open_circuit_volts, Polarity polarity) const;
 
   // The lowest setting at which an output can be wrong at all (either way), without hysteresis.

@@ -56,6 +56,7 @@ Json identity_to_json(const RunIdentity& identity) {
           {"stale_expectations", strings_to_json(identity.stale_expectations)},
           {"selectors", strings_to_json(identity.selectors)},
           {"implementations", std::move(implementations)},
+          {"inputs", judge::json_of(identity.inputs)},
           {"reproduce_options", as_utf8(identity.reproduce_options)},
           {"selected", identity.selected},
           {"complete", identity.incomplete_because.empty()},
@@ -150,6 +151,7 @@ RunIdentity identity_from(const Value& value) {
     }
     identity.selectors = judge::texts_from(object.required("selectors"));
     identity.implementations = implementations_from(object.required("implementations"));
+    if (const auto inputs = object.optional("inputs")) identity.inputs = judge::input_files_from(*inputs);
     identity.reproduce_options = text_in(object, "reproduce_options");
     identity.selected = object.required("selected").as_integer<std::uint32_t>(0, kMostCases);
     identity.incomplete_because = text_in(object, "incomplete_because");

@@ -15,6 +15,7 @@
 
 #include "harness/fault/plan_part.hpp"
 #include "harness/judge/finding.hpp"
+#include "harness/judge/input_file.hpp"
 
 namespace fieldproof::reports {
 
@@ -42,6 +43,7 @@ struct RunIdentity {
   std::vector<std::string> stale_expectations;
   std::vector<std::string> selectors;
   std::vector<Implementation> implementations;
+  std::vector<judge::InputFile> inputs;  // that the options name, also programs and libraries
   // Every option of the command line that decides the outcome, quoted for a shell, without the selector:
   // "--seed 7 --iut slave=mutant:crc_preset_zero".
   std::string reproduce_options;

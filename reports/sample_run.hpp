@@ -57,6 +57,7 @@ inline Run sample_run() {
   run.identity.pics_hash = "00112233445566ff";
   run.identity.selectors = {"interbus/**"};
   run.identity.implementations = {{"slave", 3, "mutant:accepts_bad_check"}};
+  run.identity.inputs = {{"ring.json", "8899aabbccddeeff"}, {"gone.so", ""}};
   run.identity.reproduce_options = "--seed 7 --iut slave@3=mutant:accepts_bad_check";
   run.identity.selected = 8;
   run.identity.incomplete_because = "interrupted by SIGINT";

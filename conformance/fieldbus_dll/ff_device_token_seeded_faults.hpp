@@ -1,10 +1,9 @@
 #pragma once
 
-#include <deque>
-#include <map>
 #include <optional>
 
 #include "conformance/fieldbus_dll/ff_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/submission_order.hpp"
 
 // Basic devices that use their tokens otherwise.
 namespace fieldproof::conformance::ff_seeded_faults {
@@ -25,22 +24,13 @@ class FfFifoAcrossPriorities : public FfStation {
   using FfStation::FfStation;
   bool submit(const FfRequest& request, Time now) override {
     const bool is_taken = FfStation::submit(request, now);
-    if (is_taken) order_.push_back(request.priority);
+    if (is_taken) order_.add(request.priority);
     return is_taken;
   }
-  // Those that were sent are missing from the queues.
   std::optional<Priority> next_to_send(const Queues& from, Priority) const override {
-    std::map<Priority, std::size_t> left;
-    for (const Priority priority : Queues::kMostUrgentFirst) left[priority] = from.queue(priority).size();
-    std::optional<Priority> first;
-    for (auto at = order_.rbegin(); at != order_.rend(); ++at) {
-      if (left[*at] == 0) continue;
-      --left[*at];
-      first = *at;
-    }
-    return first;
+    return order_.first_of(from);
   }
-  std::deque<Priority> order_;
+  SubmissionOrder<Queues> order_;
 };
 
 class OneFrameAToken : public FfStation {

@@ -8,6 +8,8 @@
 namespace fieldproof::conformance {
 namespace {
 
+constexpr std::size_t kStatesOfFfLas = 10;  // that walks look for: it acts by itself
+
 std::vector<PartialSource> ff_las_sequence_details() {
   using link_sources::memory;
   using link_sources::own;
@@ -58,12 +60,15 @@ const SequenceRole& ff_las_sequence_role() {
        {DerivedKind::words, {"activation_time_available", "not_activated"}},
        {DerivedKind::states, {"own_item_normal", "own_buffer_wrong"}},
        {DerivedKind::states, {"live_list_unnumbered", "live_list_wrong"}},
+       {DerivedKind::walks, {"line_left_silent", "line_left_silent"}},
        {DerivedKind::words, {"not_in_its_live_list", "live_list_wrong"}},
        {DerivedKind::words, {"idles_early", "idle_early"}},
        {DerivedKind::states, {"steps_back_to_the_extreme", "priority_wrong"}},
        {DerivedKind::repetitions, {"target_ignored", "priority_wrong"}},
        {DerivedKind::settings, {"time_at_half_speed", "time_wrong"}},
-       {DerivedKind::drawn, {"token_over_due", "token_over_due"}}}};
+       {DerivedKind::drawn, {"token_over_due", "token_over_due"}}},
+      1,
+      kStatesOfFfLas};
   return role;
 }
 

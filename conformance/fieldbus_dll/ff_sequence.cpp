@@ -43,6 +43,7 @@ const SequenceRole& ff_device_sequence_role() {
        {DerivedKind::faults, {"no_probe_response", "no_answer"}},
        {DerivedKind::words, {"subscribed_to_none", "not_delivered"}},
        {DerivedKind::states, {"returns_twice", "speaks_unasked"}},
+       {DerivedKind::walks, {"returns_twice", "speaks_unasked"}},
        {DerivedKind::repetitions, {"tells_other_source", "delivered_otherwise"}},
        {DerivedKind::settings, {"tells_no_writes", "delivered_otherwise"}},
        {DerivedKind::drawn, {"subscribed_to_none", "not_delivered"}}}};

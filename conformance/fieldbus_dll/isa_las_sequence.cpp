@@ -8,6 +8,8 @@
 namespace fieldproof::conformance {
 namespace {
 
+constexpr std::size_t kStatesOfIsaLas = 15;  // that walks look for: it acts by itself
+
 std::vector<PartialSource> isa_las_sequence_details() {
   using link_sources::own;
   return {{own("V(RR) is 32 octets, VC(UC) the duration and a margin, items within V(ST) of their time"),
@@ -55,10 +57,13 @@ const SequenceRole& isa_las_sequence_role() {
        {DerivedKind::words, {"own_data_without_return", "own_data_over_due"}},
        {DerivedKind::words, {"transfer_ignored_by_scheduler", "delegation_wrong"}},
        {DerivedKind::states, {"retakes_early", "answers_too_early"}},
+       {DerivedKind::walks, {"no_supervision", "line_left_silent"}},
        {DerivedKind::repetitions, {"scheduler_never_replies", "no_reply"}},
        {DerivedKind::settings, {"transfer_without_version", "transfer_wrong"}},
        {DerivedKind::drawn, {"scheduler_for_reply_untold", "not_delivered"}},
-       {DerivedKind::drawn, {"schedule_early", "delegation_early"}}}};
+       {DerivedKind::drawn, {"schedule_early", "delegation_early"}}},
+      1,
+      kStatesOfIsaLas};
   return role;
 }
 

@@ -58,6 +58,8 @@ class IsaModel {
   std::optional<LinkObjection> be_silent();
   // What its user must have been given since this was asked last.
   std::vector<IsaReport> take_reports() { return std::exchange(reports_, {}); }
+  // When the duration of the token that it holds is over; nothing: there is no such token.
+  std::optional<kernel::Time> token_end() const { return token_ ? token_->ends : std::nullopt; }
   // It has compelled this station, which may reply now.
   std::optional<std::uint8_t> compelled() const;
 

@@ -84,12 +84,25 @@ class IsaSequenceRun {
     // It would not be in standby any more.
     const bool is_tl = !octets.empty() && octets[0] == bench_.rules().codes.tl;
     if (bench_.is_in_standby() && is_tl && octets.size() > 1 && octets[1] == bench_.address()) return;
+    keep_off_end_of_token(octets);
     const kernel::Time begin = bench_.now();
     if (send_link_command(bench_, octets, command)) {
       model_.hear(octets, begin, bench_.now());
     } else {
       model_.hear_noise(bench_.now());
     }
+  }
+
+  // What ends when the duration of its token does is heard by a holder or by none: which one is decided by
+  // less than any clock is right by.
+  void keep_off_end_of_token(const Octets& octets) {
+    const auto over = model_.token_end();
+    if (!over) return;
+    constexpr std::int64_t kAround = 2;  // octets
+    const std::size_t length = half_bits_of_frame(with_frame_check(octets)).size() / kHalfBitsOfAnOctet;
+    const kernel::Time end = bench_.now() + bench_.octets(static_cast<std::int64_t>(length));
+    const kernel::Duration apart = end > *over ? end - *over : *over - end;
+    if (apart < bench_.octets(kAround)) settle(2 * kAround);
   }
 
   void send_framed_data(const Numbers& numbers) {
@@ -356,6 +369,7 @@ const SequenceRole& isa_dle_sequence_role() {
        {DerivedKind::faults, {"short_silence", "answers_too_early"}},
        {DerivedKind::words, {"sends_no_preamble", "frame_malformed"}},
        {DerivedKind::states, {"end_sent_twice", "speaks_unasked"}},
+       {DerivedKind::walks, {"end_sent_twice", "speaks_unasked"}},
        {DerivedKind::repetitions, {"replies_twice", "speaks_unasked"}},
        {DerivedKind::settings, {"no_frame_under_et", "data_held_back"}},
        {DerivedKind::drawn, {"sends_no_preamble", "frame_malformed"}}}};

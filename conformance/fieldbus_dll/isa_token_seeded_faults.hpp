@@ -1,9 +1,9 @@
 #pragma once
 
-#include <deque>
 #include <optional>
 
 #include "conformance/fieldbus_dll/isa_seeded_faults.hpp"
+#include "conformance/fieldbus_dll/submission_order.hpp"
 
 // Data link entities that use a token otherwise.
 namespace fieldproof::conformance::isa_seeded_faults {
@@ -115,18 +115,13 @@ class FifoAcrossPriorities : public IsaDle {
   using IsaDle::IsaDle;
   bool submit(const IsaRequest& request, Time now) override {
     const bool is_taken = IsaDle::submit(request, now);
-    if (is_taken && request.service != IsaService::reply_data) order_.push_back(request.priority);
+    if (is_taken && request.service != IsaService::reply_data) order_.add(request.priority);
     return is_taken;
   }
   std::optional<Priority> next_to_send(const Queues& from, Priority least) const override {
-    if (&from != &queues() || order_.empty()) return IsaDle::next_to_send(from, least);
-    return order_.front();
+    return &from == &queues() ? order_.first_of(from) : IsaDle::next_to_send(from, least);
   }
-  void send(const IsaRequest& request, Time now) override {
-    order_.pop_front();
-    IsaDle::send(request, now);
-  }
-  std::deque<Priority> order_;
+  SubmissionOrder<Queues> order_;
 };
 
 class FinishesAPriority : public IsaDle {

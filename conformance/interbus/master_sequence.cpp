@@ -14,6 +14,8 @@
 namespace fieldproof::conformance {
 namespace {
 
+constexpr std::size_t kStatesOfMaster = 8;  // that walks look for: it acts by itself
+
 constexpr std::size_t kCost = 3;  // a ring is recognised in each sequence
 
 constexpr std::array kStatesOfOrders{interbus::MasterState::ready, interbus::MasterState::identification,
@@ -165,8 +167,10 @@ const SequenceRole& master_sequence_role() {
        {DerivedKind::faults, {"stop_bit_ignored", "wrong_cycle_accepted"}},
        {DerivedKind::words, {"wrong_segment", "report_wrong"}},
        {DerivedKind::states, {"copied_one_cycle_late", "report_wrong"}},
+       {DerivedKind::walks, {"inputs_zeroed_on_error", "inputs_not_held"}},
        {DerivedKind::repetitions, {"stop_one_late", "cycle_unasked"}}},
-      kCost};
+      kCost,
+      kStatesOfMaster};
   return role;
 }
 

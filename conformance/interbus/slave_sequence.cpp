@@ -123,6 +123,7 @@ const SequenceRole& slave_sequence_role() {
        {DerivedKind::faults, {"clears_outputs_on_rejected_cycle", "outputs_wrong"}},
        {DerivedKind::words, {"output_octets_swapped", "outputs_wrong"}},
        {DerivedKind::states, {"does_not_resynchronise", "telegram_not_passed"}},
+       {DerivedKind::walks, {"locks_up_after_rejected_cycle", "outputs_wrong"}},
        {DerivedKind::repetitions, {"latches_5_ms_late", "outputs_at_another_time"}},
        {DerivedKind::settings, {"input_bit_stuck", "octet_wrong"}},
        {DerivedKind::drawn, {"does_not_resynchronise", "telegram_not_passed"}}}};

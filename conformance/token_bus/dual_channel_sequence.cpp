@@ -266,6 +266,7 @@ const SequenceRole& channel_manager_sequence_role() {
       {{DerivedKind::values, {"watches_the_preferred_alone", "report_other"}},
        {DerivedKind::words, {"sends_on_a_alone", "request_other"}},
        {DerivedKind::states, {"takes_the_first", "indication_other"}},
+       {DerivedKind::walks, {"takes_the_first", "indication_other"}},
        {DerivedKind::repetitions, {"zero_and_one_exchanged_on_b", "request_other"}},
        {DerivedKind::settings, {"sends_on_the_preferred_alone", "request_other"}},
        {DerivedKind::drawn, {"sends_on_a_alone", "request_other"}}}};

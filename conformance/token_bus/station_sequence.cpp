@@ -11,6 +11,10 @@
 namespace fieldproof::conformance {
 namespace {
 
+// That walks look for: with its timers, what it knows of its neighbours and what waits it has more than can
+// be visited.
+constexpr std::size_t kStatesOfStation = 20;
+
 class TokenSequenceRun {
  public:
   TokenSequenceRun(TokenBench& bench, CaseJudge& judge)
@@ -249,9 +253,12 @@ const SequenceRole& token_station_sequence_role() {
        {DerivedKind::faults, {"data_of_members_only", "indication_missing"}},
        {DerivedKind::words, {"delivers_with_another_priority", "indication_other"}},
        {DerivedKind::states, {"response_of_the_asked_only", "frame_missing"}},
+       {DerivedKind::walks, {"joins_unreported", "event_missing"}},
        {DerivedKind::repetitions, {"offer_kept", "frame_other"}},
        {DerivedKind::settings, {"preamble_of_four_octets", "preamble_short"}},
-       {DerivedKind::drawn, {"delivers_with_another_priority", "indication_other"}}}};
+       {DerivedKind::drawn, {"delivers_with_another_priority", "indication_other"}}},
+      1,
+      kStatesOfStation};
   return role;
 }
 

@@ -286,6 +286,7 @@ const SequenceRole& translator_sequence_role() {
        {DerivedKind::faults, {"error_loses_the_lock", "indication_other"}},
        {DerivedKind::words, {"reset_enables_transmitter", "sent_other"}},
        {DerivedKind::states, {"disable_toggles", "indication_other"}},
+       {DerivedKind::walks, {"reset_enables_transmitter", "sent_other"}},
        {DerivedKind::repetitions, {"zero_and_one_exchanged", "sent_other"}},
        {DerivedKind::settings, {"transmitter_on_from_the_start", "sent_other"}}},
       kCost};

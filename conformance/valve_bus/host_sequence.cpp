@@ -16,6 +16,8 @@
 namespace fieldproof::conformance {
 namespace {
 
+constexpr std::size_t kStatesOfHost = 12;  // that walks look for: it acts by itself
+
 std::vector<std::uint8_t> fitted(std::vector<std::uint8_t> octets, std::int64_t fit) {
   if (fit == 0 || octets.size() < kHostAnswerOctets) return octets;
   const std::size_t first = fit == 1 ? 0 : octets.size() - kHostAnswerOctets;
@@ -307,10 +309,12 @@ const SequenceRole& host_sequence_role() {
        {DerivedKind::faults, {"waits_long_behind_errors", "no_request"}},
        {DerivedKind::words, {"request_check_without_id", "check_wrong"}},
        {DerivedKind::states, {"request_check_without_id", "check_wrong"}},
+       {DerivedKind::walks, {"never_resyncs", "indication_missing"}},
        {DerivedKind::repetitions, {"told_twice", "indication_wrong"}},
        {DerivedKind::settings, {"silence_told_as_data", "indication_wrong"}},
        {DerivedKind::drawn, {"request_check_without_id", "check_wrong"}}},
-      kCostOfHost};
+      kCostOfHost,
+      kStatesOfHost};
   return role;
 }
 

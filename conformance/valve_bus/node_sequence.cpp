@@ -46,6 +46,7 @@ const SequenceRole& node_sequence_role() {
        {DerivedKind::faults, {"turns_round_late", "answer_too_late"}},
        {DerivedKind::words, {"turns_round_a_tenth_late", "answer_too_late"}},
        {DerivedKind::states, {"turns_round_3_ms_late", "no_answer"}},
+       {DerivedKind::walks, {"answers_twice", "answered_twice"}},
        {DerivedKind::repetitions, {"valves_set_at_power_up", "valves_wrong"}},
        {DerivedKind::settings, {"switch_bit_stuck", "answer_data_wrong"}},
        {DerivedKind::drawn, {"turns_round_a_tenth_late", "answer_too_late"}}}};

@@ -5,6 +5,8 @@
 #include <deque>
 #include <utility>
 
+#include "harness/kernel/check.hpp"
+
 // What waits to be sent, one queue for each priority. A `Request` has a `priority`.
 namespace fieldproof::traffic {
 
@@ -24,6 +26,7 @@ class RequestQueues {
     return true;
   }
   Request pop(Priority priority) {
+    FIELDPROOF_CHECK(!queue(priority).empty(), "what is taken from a queue is in it");
     Request request = std::move(queue(priority).front());
     queue(priority).pop_front();
     return request;

@@ -231,6 +231,13 @@ await look("the cover tells what was tested and what came out", async (page) => 
   }
 });
 
+await look("the cover names the files that decided, with their hashes", async (page) => {
+  if (!data.cover) return;
+  const text = await page.locator("#cover").innerText();
+  const inputs = [...data.runs.map(({ results }) => results.run), ...data.documents.map(({ content }) => content)].flatMap((one) => one.inputs ?? []);
+  for (const { path, hash } of inputs) expect(text.includes(`${path.slice(0, 8)}`) && text.includes(hash || "(not readable)"), `${path} ${hash}`);
+});
+
 await look("the cover tells what bursts did to the cycle, what each criterion rests on, and each caveat once", async (page) => {
   if (!data.cover) return;
   const text = await page.locator("#cover").innerText();
@@ -287,6 +294,22 @@ await look("the share of bad exchanges stands over the voltage, with a chart for
         expect(label.includes(`none at ${test.open_circuit_volts.toLocaleString("en").replace(",", "\u202f")} V, at most ${Number(bound.toPrecision(2))} %`), `no bound in "${label}"`);
       }
     }
+  }
+});
+
+await look("a pulse stands beside the levels that it hits, and what becomes of one is said", async (page) => {
+  for (const [at, { content: { pulse } }] of data.documents.filter((one) => one.content.schema === "fieldproof/emc/1").entries()) {
+    const place = page.locator("#immunity > article").nth(at).locator(".pulse");
+    expectEqual(await place.count(), pulse ? 1 : 0, "pictures");
+    if (!pulse) continue;
+    await place.scrollIntoViewIfNeeded();
+    await place.locator(".chart canvas").nth(1).waitFor();
+    const text = await place.innerText();
+    const longest = Math.max(0, ...pulse.wrong_ns.flat().map(([from, to]) => to - from));
+    const sixteenth = pulse.level_ns / 16;
+    const fate = longest === 0 ? "wrong at no instant" : longest > 2 * sixteenth ? /(3 of 3 samples are|the sample is) wrong: a [01] is taken for a [01]/ : null;
+    if (fate) expect(text.match(fate), `what becomes of the level: ${text}`);
+    for (const word of [pulse.receiver.slice(0, 8), "threshold", "where it samples"]) expect(text.includes(word), `no "${word}": ${text}`);
   }
 });
 

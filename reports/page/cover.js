@@ -44,6 +44,11 @@ function methodText(documents) {
     ? "; bursts are an uncalibrated model of IEC 61000-4-4, no laboratory test" : ""}`;
 }
 
+// The network, the plan of faults, the profile, the program itself: what is handed over can be compared with it.
+function inputsText(contents) {
+  return distinct(contents.flatMap(({ inputs }) => inputs ?? []).map(({ path, hash }) => `${path} ${hash || "(not readable)"}`)).join(", ");
+}
+
 function benchPart({ runs, documents }) {
   const identities = runs.map(({ results }) => results.run);
   const made = documents.map(({ content }) => content.made).filter(Boolean);
@@ -54,8 +59,7 @@ function benchPart({ runs, documents }) {
     ["Date", dates({ runs, documents })],
     ["Host", distinct([...runs.map(({ manifest }) => manifest), ...made].map((one) => one.host)).join(", ")],
     ["Seeds", distinct([...identities, ...documents.map(({ content }) => content)].map((one) => one.seed)).join(", ")],
-    ["Network file, hash", distinct(identities.map((one) => one.network_hash)).join(", ")],
-    ["Plan of faults, hash", distinct(identities.map((one) => one.plan_hash)).join(", ")],
+    ["Inputs, hash", inputsText([...identities, ...documents.map(({ content }) => content)])],
   ]);
 }
 

@@ -5,6 +5,7 @@ import { definitions, element, notice, section } from "./dom.js";
 import { number, part, plural, scientific } from "./format.js";
 import { heatMap, shareLines } from "./heat_map.js";
 import { later } from "./later.js";
+import { pulsePart } from "./pulse.js";
 import { documentCommand, documentsOf, madeText } from "./summary.js";
 import { table } from "./table.js";
 import { sensitivityPart, thresholdsPart } from "./thresholds.js";
@@ -176,7 +177,7 @@ function campaign({ name, content }) {
       documentCommand(content, name),
       content.is_complete ? null : notice("The campaign ended before all of its tests were made: what is not here was not tested."),
       thresholdsPart(content),
-      hasBursts ? [heatOf(content.tests), criteriaPart(content), burstShares(content.tests), burstCourse(content.tests), besideReferences(content.tests)] : null, sensitivityPart(content), totalPart(content),
+      hasBursts ? [heatOf(content.tests), criteriaPart(content), burstShares(content.tests), burstCourse(content.tests), pulsePart(content), besideReferences(content.tests)] : null, sensitivityPart(content), totalPart(content),
       content.channels.length ? channels(content.channels) : null, hasBursts ? [balance(content.tests), ledger(content.tests)] : null);
 }
 

@@ -5,10 +5,9 @@
 #include <optional>
 #include <utility>
 
-namespace fieldproof::emc {
+namespace fieldproof::kernel {
 
-// What takes milliseconds to compute and many channels share: made when the first of them asks, whatever
-// thread that is on.
+// What takes long to compute and many share: made when the first of them asks, whatever thread that is on.
 template <typename Result>
 class ComputedOnce {
  public:
@@ -25,4 +24,4 @@ class ComputedOnce {
   std::optional<Result> result_;
 };
 
-}  // namespace fieldproof::emc
+}  // namespace fieldproof::kernel
