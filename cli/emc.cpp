@@ -28,7 +28,6 @@
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "conformance/ordered_work.hpp"
-#include "emc/burst_clamp.hpp"
 #include "emc/residual/residual_error.hpp"
 #include "harness/iut/misbehaviour.hpp"
 #include "harness/kernel/error.hpp"
@@ -176,7 +175,7 @@ class Campaign {
       const std::unique_ptr<network::Network> network = test.network->make(test.seed);
       for (const network::Place& place : network->places()) {
         ran.places.push_back({place.name, place.is_exposed, std::string(place.why_not),
-                              kernel::kSecond / place.level_rate, emc::sampling_of(place)});
+                              kernel::kSecond / place.level_rate, place.sampling});
       }
       ran.recovery = network->recovery_limit();
       ran.acceptance = network->acceptance();

@@ -20,12 +20,8 @@ struct FramingOf {
 
 }  // namespace
 
-line::Sampling sampling_of(const network::Place& place) {
-  return std::holds_alternative<std::monostate>(place.units) ? line::kMidBit : line::kMajorityOfThree;
-}
-
 BurstReceiver burst_receiver_of(const network::Place& place) {
-  return {place.level_rate, std::visit(FramingOf{}, place.units), sampling_of(place), true,
+  return {place.level_rate, std::visit(FramingOf{}, place.units), place.sampling, true,
           place.has_whole_units};
 }
 

@@ -48,8 +48,5 @@ class BurstClamp {
 
 // As a burst channel needs to know the receiver of a place.
 BurstReceiver burst_receiver_of(const network::Place& place);
-// Start-stop receivers take the majority of three samples of a bit; those of Manchester code sample each half
-// bit once.
-line::Sampling sampling_of(const network::Place& place);
 
 }  // namespace fieldproof::emc

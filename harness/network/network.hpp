@@ -14,6 +14,7 @@
 #include "harness/judge/verdict.hpp"
 #include "harness/kernel/time.hpp"
 #include "harness/line/character.hpp"
+#include "harness/line/sampling.hpp"
 #include "harness/line/telegram.hpp"
 #include "harness/measure/measurement.hpp"
 #include "harness/network/acceptance.hpp"
@@ -101,6 +102,8 @@ struct Place {
   trace::Channel trace_channel{};
   std::int64_t level_rate = 0;  // levels per second that its sender drives
   ReceivedUnits units{};
+  // When its receiver looks at a level: of Manchester code once in each half bit.
+  line::Sampling sampling{};
   // Its senders drive whole units only.
   bool has_whole_units = false;
   // Its cable lies in the clamp of a burst test. Where it does not, `why_not` is the reason.

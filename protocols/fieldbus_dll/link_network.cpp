@@ -204,6 +204,7 @@ segment::MediumPort& LinkNetwork::seat(segment::Station& station, std::uint8_t n
                      .receiver = &place,
                      .trace_channel = place.trace_channel(),
                      .level_rate = 2 * rules_.bit_rate,
+                     .sampling = line::kMidBit,
                      .is_exposed = is_exposed,
                      .why_not = is_exposed ? "" : "its spur is declared to lie in no clamp"});
   return place;

@@ -112,7 +112,8 @@ segment::MediumPort& RingNetwork::attach(const std::string& name, std::size_t st
   places_.push_back({.name = place.name(),
                      .receiver = &place,
                      .trace_channel = place.trace_channel(),
-                     .level_rate = 2 * description_.rules.phy_bit_rate});
+                     .level_rate = 2 * description_.rules.phy_bit_rate,
+                     .sampling = line::kMidBit});
   return place;
 }
 
