@@ -116,5 +116,5 @@ export function pulsePart({pulse}) {
         {colour: "accent", text: `what it sees: levels of ${number(pulse.level_ns, 4)} ns and the pulse after its filter`},
         {colour: "ink", dash: 1, text: `threshold, ${number(pulse.threshold_v)} V; hysteresis ${number(pulse.hysteresis_mv)} mV`},
         {colour: "quiet", dash: 2, text: `where it samples: ${samples} of each level`},
-        {colour: "fail", text: meeting.hit.length ? "samples that are wrong; bar on top: its output is wrong" : "bar on top: its output is wrong"}]));
+        {colour: "fail", text: `${meeting.hit.length ? "samples that are wrong; " : ""}bar on top: while its output is wrong, by this voltage or by the common mode`}]));
 }
