@@ -125,7 +125,7 @@ std::vector<SequenceWord> ff_device_words() {
       link_supply(),
       link_one(),
       link_wait(),
-      link_framed(kFinely),
+      link_framed(),
       link_checked(),
       {.word = "control",
        .meaning = "this first octet, with what makes a PT for the device after it",

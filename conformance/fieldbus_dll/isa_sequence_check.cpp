@@ -111,7 +111,8 @@ class IsaSequenceRun {
       return octets_of(IsaWord::data, {to, 1, static_cast<std::int64_t>(Priority::normal), 0, 8});
     };
     const kernel::Time begin = bench_.now();
-    const std::vector<Octets> heard = send_framed(bench_, numbers[0], data_to(kToAnother), data_to(0));
+    const std::vector<Octets> heard =
+        send_framed(bench_, numbers[0], data_to(numbers[0] == kTwoOfThem ? 0 : kToAnother), data_to(0));
     for (const Octets& dlpdu : heard) model_.hear(dlpdu, begin, bench_.now());
     if (heard.empty()) model_.hear_noise(bench_.now());
     settle(numbers.back());

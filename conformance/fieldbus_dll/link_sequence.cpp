@@ -20,9 +20,6 @@ constexpr int kMostBitsFlipped = 2;
 
 constexpr std::string_view kFramings =
     "data of 8 octets for its user, with 1 to 7 bits more in front of the end delimiter, 8: after a start "
-    "delimiter and two octets, 9: after a frame for another in the same transmission";
-constexpr std::string_view kAllFramings =
-    "data of 8 octets for its user, with 1 to 7 bits more in front of the end delimiter, 8: after a start "
     "delimiter and two octets, 9: after a frame for another in the same transmission, 10: after a start "
     "delimiter, two octets and three bits, 11: after other data for its user, 12: in finer levels";
 
@@ -114,11 +111,11 @@ void send_noise(LinkBench& bench, std::int64_t octets) {
   bench.send_half_bits(std::move(half_bits));
 }
 
-SequenceWord link_framed(std::int64_t most) {
+SequenceWord link_framed() {
   return {.word = "framed",
-          .meaning = most > kAfterAnother ? kAllFramings : kFramings,
-          .numbers = {{"how", 1, most, kAfterAnother}, link_silence()},
-          .weight = most > kAfterAnother ? 4U : 2U,
+          .meaning = kFramings,
+          .numbers = {{"how", 1, kFinely, kAfterAnother}, link_silence()},
+          .weight = 4,
           .is_no_frame = true};
 }
 

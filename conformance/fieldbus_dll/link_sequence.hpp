@@ -100,7 +100,7 @@ inline constexpr std::int64_t kAfterAnother = 9;
 inline constexpr std::int64_t kWithinAnOctet = 10;
 inline constexpr std::int64_t kTwoOfThem = 11;
 inline constexpr std::int64_t kFinely = 12;
-SequenceWord link_framed(std::int64_t most = kAfterAnother);
+SequenceWord link_framed();
 // Sends `octets` so, `other` before it where two are sent; gives the DLPDUs that every receiver has to take.
 std::vector<Octets> send_framed(LinkBench& bench, std::int64_t framing, const Octets& other,
                                 const Octets& octets);
