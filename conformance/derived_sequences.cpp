@@ -23,12 +23,10 @@ const std::array<DerivedRow, 8> kDerivedRows{{
     {DerivedKind::states, "each_command_in_each_state",
      "Each command, with each of its choices, in each state into which commands bring a station.", 1'500},
     {DerivedKind::walks, "each_transition_of_its_states",
-     "Each command in each state of the reference, found by these commands, then what tells where that leads "
-     "from "
-     "all other states. Where all walks are taken and the states are all there are: no machine of at most so "
-     "many "
-     "states (at full volume: one more) that answers to these commands at once does anything else.",
-     1'900, 20'000},
+     "Each command in each state of the reference that single commands tell apart, then what tells where "
+     "that "
+     "leads from all others; at full volume after one command more.",
+     1'900, 30'000},
     {DerivedKind::repetitions, "the_same_many_times",
      "Each command again and again, two commands in turn, and others after them.", 30, 350},
     {DerivedKind::settings, "each_setting_at_its_ends",

@@ -57,7 +57,7 @@ struct DerivedSequences {
 inline constexpr std::size_t kManyRepetitions = 300;
 inline constexpr std::size_t kMostRepetitions = 1'000;
 
-// `makers` of them, as many as `most` allows, drawn.
+// All that is made about one thing; where that is more than `most`, so many of them, drawn.
 DerivedSequences taken_of(std::vector<std::function<Sequence()>> makers, std::size_t most,
                           kernel::Random random);
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "conformance/sequence_check.hpp"
 #include "conformance/walks.hpp"
@@ -24,29 +25,28 @@ namespace {
 constexpr std::size_t kCommandsOfWalks = kernel::kIsSanitized ? 8 : 16;
 constexpr std::size_t kMostStatesIfSanitized = 6;
 
-template <typename... Ts>
-struct Overloaded : Ts... {
-  using Ts::operator()...;
-};
-
 // What an implementation does, without when and without the data: counters and data make states without end,
 // and what is in a frame is compared anyway.
 std::string text_of(const iut::Act& act) {
-  return std::visit(
-      Overloaded{
-          [](const iut::SwitchedDriver& one) { return fmt::format("driver {} {};", one.port, one.is_on); },
-          [](const iut::Sent& one) { return fmt::format("send {} {};", one.port, one.characters.size()); },
-          [](const iut::DroveLevels& one) {
-            return fmt::format("drive {} {};", one.port, one.wave.levels.size());
-          },
-          [](const iut::Wrote& one) { return fmt::format("write {};", one.item); },
-          [](const auto&) { return std::string(); }},
-      act);
+  if (const auto* driver = std::get_if<iut::SwitchedDriver>(&act))
+    return fmt::format("driver {} {};", driver->port, driver->is_on);
+  if (const auto* sent = std::get_if<iut::Sent>(&act))
+    return fmt::format("send {} {};", sent->port, sent->characters.size());
+  if (const auto* drove = std::get_if<iut::DroveLevels>(&act))
+    return fmt::format("drive {} {};", drove->port, drove->wave.levels.size());
+  if (const auto* wrote = std::get_if<iut::Wrote>(&act)) return fmt::format("write {};", wrote->item);
+  return {};
 }
 
 bool is_stimulus(iut::CallKind kind) {
   return kind == iut::CallKind::power || kind == iut::CallKind::characters || kind == iut::CallKind::levels ||
          kind == iut::CallKind::activity;
+}
+
+Sequence sequence_of(const WalkWord& word, const std::vector<SequenceCommand>& alphabet) {
+  Sequence made;
+  for (const std::size_t command : word) made.commands.push_back(alphabet[command]);
+  return made;
 }
 
 // Runs words on benches of their own and remembers how far their beginnings came.
@@ -89,9 +89,7 @@ class ReferenceAnswers {
   using Devices = std::shared_ptr<const iut::DeviceRecording>;
 
   Devices run(const WalkWord& word) const {
-    Sequence sequence;
-    for (const std::size_t command : word) sequence.commands.push_back(alphabet_[command]);
-    return run_sequence(suite_, role_, sequence, setup_).recording.devices;
+    return run_sequence(suite_, role_, sequence_of(word, alphabet_), setup_).recording.devices;
   }
 
   static Trail trail_of(const Devices& devices) {
@@ -132,13 +130,17 @@ struct RoleWalks {
   Walks walks;
 };
 
+WalkBounds bounds_of(const SequenceRole& role, Volume volume) {
+  const std::size_t most =
+      kernel::kIsSanitized ? std::min(role.most_states, kMostStatesIfSanitized) : role.most_states;
+  return {.most_states = most, .more = volume == Volume::full ? 1U : 0U};
+}
+
 RoleWalks made_walks(const Suite& suite, const SequenceRole& role, Volume volume) {
   RoleWalks made{walk_alphabet(role.vocabulary, kCommandsOfWalks), {}};
   ReferenceAnswers answers(suite, role, made.alphabet);
-  const std::size_t most =
-      kernel::kIsSanitized ? std::min(role.most_states, kMostStatesIfSanitized) : role.most_states;
-  const WalkBounds bounds{.most_states = most, .more = volume == Volume::full ? 1U : 0U};
-  made.walks = explore(made.alphabet.size(), [&](const WalkWord& word) { return answers(word); }, bounds);
+  made.walks = explore(
+      made.alphabet.size(), [&](const WalkWord& word) { return answers(word); }, bounds_of(role, volume));
   return made;
 }
 
@@ -165,16 +167,20 @@ DerivedSequences walk_sequences(const Suite& suite, const SequenceRole& role, Vo
   const auto& [alphabet, walks] = walks_of(suite, role, volume);
   std::vector<std::function<Sequence()>> makers;
   for (const WalkWord& word : walks.words) {
-    makers.push_back([&alphabet, &word] {
-      Sequence made;
-      for (const std::size_t command : word) made.commands.push_back(alphabet[command]);
-      return made;
-    });
+    makers.push_back([&alphabet, &word] { return sequence_of(word, alphabet); });
   }
   DerivedSequences derived = taken_of(std::move(makers), most, random);
-  derived.counts = {{"commands of the walks", walks.commands},
-                    {walks.is_whole ? "states" : "states, and there are more", walks.states}};
+  derived.counts = {{"commands of the walks", alphabet.size()},
+                    {walks.is_whole ? "states told apart" : "states told apart, of more", walks.states}};
   return derived;
+}
+
+std::vector<std::string> surprise_of(const Suite& suite, const SequenceRole& role) {
+  const std::vector<SequenceCommand> alphabet = walk_alphabet(role.vocabulary, kCommandsOfWalks);
+  ReferenceAnswers answers(suite, role, alphabet);
+  const auto word = first_surprise(
+      alphabet.size(), [&](const WalkWord& asked) { return answers(asked); }, bounds_of(role, Volume::quick));
+  return word ? sequence_lines(sequence_of(*word, alphabet), role.vocabulary) : std::vector<std::string>();
 }
 
 }  // namespace fieldproof::conformance

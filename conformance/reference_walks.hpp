@@ -11,4 +11,8 @@ namespace fieldproof::conformance {
 DerivedSequences walk_sequences(const Suite& suite, const SequenceRole& role, Volume volume, std::size_t most,
                                 kernel::Random random);
 
+// A command after two others to which the reference does not answer as the states that were found do, in the
+// words of the role; empty: there is none. For tests: it asks the reference some hundred thousand times.
+std::vector<std::string> surprise_of(const Suite& suite, const SequenceRole& role);
+
 }  // namespace fieldproof::conformance

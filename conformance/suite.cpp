@@ -21,6 +21,12 @@ bool is_named_in(const std::vector<TestCase>& cases, const Mutant& mutant) {
   });
 }
 
+// Those of whose role this is true, of the two that a row may have.
+template <typename IsOfRole>
+const std::optional<RoleSequences>& sequences_of(const RoleRow& row, const IsOfRole& is_of_role) {
+  return row.more_sequences && is_of_role(row.more_sequences->role) ? row.more_sequences : row.sequences;
+}
+
 }  // namespace
 
 Suite::Suite(SuiteRows rows, SuiteGiven given) : rows_(std::move(rows)), given_(std::move(given)) {
@@ -105,8 +111,8 @@ SequenceVocabulary Suite::vocabulary(const SequenceRole& role, const Setup& setu
 
 Outcome Suite::run_sequence(const SequenceRole& role, const Sequence& sequence, const Setup& setup) const {
   const RoleRow& row = row_of(role.test_case);
-  const bool is_of_more = row.more_sequences && row.more_sequences->role.test_case.id == role.test_case.id;
-  const std::optional<RoleSequences>& sequences = is_of_more ? row.more_sequences : row.sequences;
+  const std::optional<RoleSequences>& sequences =
+      sequences_of(row, [&](const SequenceRole& one) { return one.test_case.id == role.test_case.id; });
   FIELDPROOF_CHECK(bool(sequences),
                    "a suite runs sequences of the roles that it names: " + role.test_case.id);
   RunningCase run = begin(role.test_case, setup);
@@ -118,9 +124,8 @@ Outcome Suite::run_sequence(const SequenceRole& role, const Sequence& sequence, 
 }
 
 judge::CaseResult Suite::run_derived(const RoleRow& row, DerivedKind kind, RunningCase& run) const {
-  const bool is_of_more =
-      row.more_sequences && derived_id(row.more_sequences->role, kind) == run.test_case().id;
-  const RoleSequences& sequences = is_of_more ? *row.more_sequences : *row.sequences;
+  const RoleSequences& sequences = *sequences_of(
+      row, [&](const SequenceRole& one) { return derived_id(one, kind) == run.test_case().id; });
   const SequenceVocabulary vocabulary = this->vocabulary(sequences.role, run.setup());
   const std::size_t most =
       run.is_on_real_line()

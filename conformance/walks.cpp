@@ -19,9 +19,20 @@ class Exploration {
 
   Walks run() {
     find_states();
-    Walks walks{commands_, states_.size(), bounds_.more, is_whole_, {}};
-    walks.words = words();
-    return walks;
+    return {states_.size(), is_whole_, words()};
+  }
+
+  std::optional<WalkWord> surprise() {
+    find_states();
+    for (const State& state : states_) {
+      for (const Reached& one : one_further(one_further({{state.access, place_of(state.row)}}))) {
+        if (one.state == kUnknown) continue;
+        const Row row = row_after(one.word);
+        const auto [expected, answered] = std::ranges::mismatch(states_[one.state].row, row);
+        if (answered != row.end()) return then(one.word, static_cast<std::size_t>(answered - row.begin()));
+      }
+    }
+    return std::nullopt;
   }
 
  private:
@@ -161,6 +172,11 @@ class Exploration {
 
 Walks explore(std::size_t commands, const WalkAnswer& answer, const WalkBounds& bounds) {
   return Exploration(commands, answer, bounds).run();
+}
+
+std::optional<WalkWord> first_surprise(std::size_t commands, const WalkAnswer& answer,
+                                       const WalkBounds& bounds) {
+  return Exploration(commands, answer, bounds).surprise();
 }
 
 std::vector<SequenceCommand> walk_alphabet(const SequenceVocabulary& vocabulary, std::size_t most) {

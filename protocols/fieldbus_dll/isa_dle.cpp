@@ -112,8 +112,7 @@ void IsaDle::on_dlpdu(const IsaDlpdu& dlpdu, const Place& place) {
     return;
   }
   // Whichever is told first of what happens at one instant: a token whose duration is over is none.
-  const bool is_over = state_ == DleState::holding && token_->ends <= place.end;
-  if (is_over || (state_ == DleState::holding && is_of_scheduler(dlpdu.type))) {
+  if (state_ == DleState::holding && (token_->ends <= place.end || is_of_scheduler(dlpdu.type))) {
     drop_token();
     enter(DleState::idle);
   }

@@ -69,6 +69,22 @@ TEST_F(IsaDleTest, HoldingATokenThatIsOverIsSilent) {
   EXPECT_EQ(dle_.state(), DleState::idle);
 }
 
+// The CD ends, two octets after the ES, at the very instant at which that is over, or an octet beside it.
+TEST_F(IsaDleTest, ATokenIsOverAtTheInstantAtWhichItsDurationIs) {
+  constexpr std::int64_t kOctetsOfACd = 8;  // with preamble, delimiters and check
+  for (const std::int64_t beside : {-1, 0, 1}) {
+    IsaTestLink link;
+    IsaDle dle{{.rules = {}, .address = kNode}};
+    link.add(dle);
+    link.wait(20);
+    link.say(
+        token(IsaType::es, Priority::normal, kNode, static_cast<std::uint16_t>(2 + kOctetsOfACd + beside)));
+    link.wait(2);
+    link.say({.type = IsaType::cd, .destination = kNode, .source = 0x10});
+    EXPECT_EQ(dle.state(), beside > 0 ? DleState::holding : DleState::replying) << beside;
+  }
+}
+
 TEST_F(IsaDleTest, HoldingADataDlpduOfAnotherIsWaitedFor) {
   submit(IsaService::unit_data, {0xAB});
   link_.say(token(IsaType::es, Priority::normal, kNode, 2'000));
