@@ -107,7 +107,7 @@ JobProcess::~JobProcess() {
 void JobProcess::check_inputs() {
   for (const judge::InputFile& input : job_.inputs) {
     try {
-      if (judge::hash_of(config::read_text(input.path, judge::kLargestInput)) == input.hash) continue;
+      if (judge::hash_of_file(input.path) == input.hash) continue;
       obstacle_ = fmt::format("{}: the file is another one here, or has changed since the campaign began",
                               input.path);
     } catch (const kernel::Error& error) {

@@ -81,9 +81,9 @@ std::span<const std::string_view> campaign_verbs() {
 }
 
 bool is_of_a_row(const Option& option, std::string_view verb) {
-  return is_known_to(option, verb) &&
-         (option.decides_outcome || option.decides_exit_code || option.name == "cases" ||
-          option.name == "corpus" || option.name == "runs");
+  const bool decides = option.decides_outcome && !option.is_of_the_moment;
+  return is_known_to(option, verb) && (decides || option.decides_exit_code || option.name == "cases" ||
+                                       option.name == "corpus" || option.name == "runs");
 }
 
 CampaignPlan::Words CampaignPlan::Axis::at(std::uint64_t n) const {
@@ -259,8 +259,7 @@ void CampaignPlan::note_inputs(const Row& row) {
     for (const Words& words : axis.choices) {
       for (const std::string& word : words) {
         for (const std::string& file : input_files_of(word, axis.option)) {
-          if (!hashes_.contains(file))
-            hashes_[file] = judge::hash_of(config::read_text(file, judge::kLargestInput));
+          if (!hashes_.contains(file)) hashes_[file] = judge::hash_of_file(file);
         }
       }
     }

@@ -185,8 +185,7 @@ int fit_emc(Session& session) {
   }
   made.fit = emc::BurstModel(made.profile.coupling, made.levels, made.bit_rate).fit(made.rows);
   session.terminal.print(fit_text(made));
-  // The option says what to do now, so it is not among those that are stored anyway.
-  write_document(session, fmt::format("emc --fit {}", reports::shell_quoted(made.file)), fit_json(made));
+  write_document(session, "emc", fit_json(made));
   switch (made.fit.verdict) {
     case emc::FitVerdict::consistent:
       return kAllAsExpected;

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "cli/sequence_corpus.hpp"
-#include "harness/config/document.hpp"
 #include "harness/iut/process.hpp"
 #include "harness/kernel/error.hpp"
 
@@ -47,7 +46,7 @@ bool is_file(const std::string& path) {
 
 std::string hash_or_nothing(const std::string& file) {
   try {
-    return judge::hash_of(config::read_text(file, judge::kLargestInput));
+    return judge::hash_of_file(file);
   } catch (const kernel::Error&) {
     return {};
   }

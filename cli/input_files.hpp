@@ -17,7 +17,7 @@ namespace fieldproof::cli {
 std::vector<std::string> input_files_of(std::string_view word, const Option* option);
 
 // Of what decides the outcome of the call, each once, in the order of the options, operands first. A file
-// that cannot be read, or is larger than kLargestInput, has no hash.
+// that cannot be read has no hash.
 std::vector<judge::InputFile> input_files_of(const Session& session);
 
 }  // namespace fieldproof::cli

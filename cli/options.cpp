@@ -57,7 +57,7 @@ constexpr std::array kOptions = {
     Option{"test-levels", list, "L,L...", "1..4", "emc", "test levels of signal ports: 1, 1..4, or volts x:1000, x:1000..4500:500", false, true},
     Option{"search", flag, "", "", "emc", "find from which voltage on each criterion is seen, also where --test-levels is given", false, true},
     Option{"sensitivity", flag, "", "", "emc", "at the highest level: over which range of each parameter of the coupling that nobody measured the criterion stays", false, true},
-    Option{"fit", value, "FILE", "", "emc", "hold a laboratory's counts (CSV) against the burst model instead of simulating; see docs/measure.md", true},
+    Option{"fit", value, "FILE", "", "emc", "hold a laboratory's counts (CSV) against the burst model instead of simulating; see docs/measure.md", true, true},
     Option{"bits", value, "N", "", "emc", "with --fit: levels of a frame on the line, where it is not what its check covers", false, true},
     Option{"repetition", list, "R,R...", "5kHz,100kHz", "emc", "5kHz, 100kHz, or 2.5kHz of edition 1", false, true},
     Option{"polarity", list, "+,-", "+,-", "emc", "of all pulses of a test", false, true},

@@ -9,6 +9,7 @@
 #include "cli/command_line.hpp"
 #include "cli/disturbances.hpp"
 #include "cli/exit_code.hpp"
+#include "cli/input_files.hpp"
 #include "cli/stored_document.hpp"
 #include "cli/verbs.hpp"
 #include "harness/iut/misbehaviour.hpp"
@@ -29,8 +30,11 @@ int serve(const Command& command, const std::vector<std::string>& arguments, Ter
     return kAllAsExpected;
   }
   if (find_option("quiet", verb->name) != nullptr) terminal.set_quiet(settings.is_set("quiet"));
-  if (find_option("json", verb->name) != nullptr && settings.is_set("json")) date_of_document();
   Session session{settings, terminal, command.operands, arguments};
+  if (find_option("json", verb->name) != nullptr && settings.is_set("json")) {
+    date_of_document();
+    session.inputs = input_files_of(session);
+  }
   return verb->serve(session);
 }
 

@@ -176,6 +176,13 @@ TEST_F(ReportVerb, ARunAndADocumentHoldTheHashesOfTheirFiles) {
   const Called called = call({"emc", "valve_bus", "--duration", "1s", "--test-levels", "1", "--iut",
                               "node@1=exec:sh ./node.sh", "--json", "emc.json"});
   EXPECT_LE(called.exit_code, 1) << called.err;
+  write("node.sh", node + " # a third one\n");
+  const Called resumed = call({"run", "--resume", "run2"});
+  EXPECT_EQ(resumed.exit_code, 64);
+  EXPECT_HOLDS(resumed.err, "./node.sh has changed since");
+  const std::string counts = (kSourceFolder / "examples/burst_counts.csv").string();
+  EXPECT_EQ(call({"emc", "interbus", "--fit", counts, "--bits", "182", "--json", "fit.json"}).exit_code, 0);
+  EXPECT_EQ(inputs_of("fit.json").size(), 1U);
   const auto of_document = inputs_of("emc.json");
   ASSERT_EQ(of_document.size(), 1U);
   EXPECT_EQ(of_document.at("./node.sh").size(), 16U);

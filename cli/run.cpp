@@ -114,6 +114,12 @@ void check_same_run(const reports::RunDirectory& directory, const reports::RunId
                     const reports::RunIdentity& now) {
   if (const std::string sentence = difference(stored, now); !sentence.empty())
     refuse_resume(directory, sentence);
+  for (const judge::InputFile& file : stored.inputs) {
+    const auto same = std::ranges::find(now.inputs, file.path, &judge::InputFile::path);
+    if (same != now.inputs.end() && same->hash != file.hash)
+      refuse_resume(directory,
+                    fmt::format("{} has changed since, so its verdicts would be of two", file.path));
+  }
 }
 
 Prepared prepare_resumed(Session& session) {

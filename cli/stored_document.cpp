@@ -11,7 +11,6 @@
 #include "campaign/embedded_schemas.hpp"
 #include "cli/build_info.hpp"
 #include "cli/embedded_schemas.hpp"
-#include "cli/input_files.hpp"
 #include "cli/run_setup.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/host_name.hpp"
@@ -56,7 +55,7 @@ void write_document(const Session& session, const std::string& verb, const std::
   using nlohmann::ordered_json;
   ordered_json document = ordered_json::parse(json);
   document["command"] = command_of(session, verb, more);
-  document["inputs"] = judge::json_of(input_files_of(session));
+  document["inputs"] = judge::json_of(session.inputs);
   document["made"] = {
       {"tool_version", tool_version()}, {"date", date_of_document()}, {"host", kernel::host_name()}};
   reports::write_text_file(session.settings.text("json"),

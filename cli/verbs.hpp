@@ -13,6 +13,7 @@
 #include "cli/settings.hpp"
 #include "cli/terminal.hpp"
 #include "conformance/catalogue.hpp"
+#include "harness/judge/input_file.hpp"
 
 namespace fieldproof::cli {
 
@@ -33,6 +34,8 @@ class Session {
   Terminal& terminal;
   std::vector<std::string> operands;   // selectors, case id, run directories
   std::vector<std::string> arguments;  // the command line as it was typed, program first
+  // For its document: as they were before the verb began.
+  std::vector<judge::InputFile> inputs{};
 
  private:
   mutable std::once_flag is_made_;

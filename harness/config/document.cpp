@@ -19,7 +19,7 @@ namespace {
 
 }  // namespace
 
-std::string read_text(const std::filesystem::path& path, std::size_t limit) {
+void read_blocks(const std::filesystem::path& path, const std::function<void(std::string_view)>& take) {
   std::error_code no_status;
   const auto kind = std::filesystem::status(path, no_status).type();
   if (kind == std::filesystem::file_type::directory) {
@@ -31,20 +31,25 @@ std::string read_text(const std::filesystem::path& path, std::size_t limit) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) fail_to_read(path, std::generic_category().message(errno));
-  std::string text;
   std::vector<char> block(std::size_t{1} << 16);
-  // Files below /proc have no size, so what is read is counted.
-  while (text.size() <= limit && file) {
+  while (file) {
     file.read(block.data(), static_cast<std::streamsize>(block.size()));
-    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    take({block.data(), static_cast<std::size_t>(file.gcount())});
   }
   if (file.bad()) fail_to_read(path, std::generic_category().message(errno));
-  if (text.size() > limit) {
+}
+
+std::string read_text(const std::filesystem::path& path, std::size_t limit) {
+  std::string text;
+  // Files below /proc have no size, so what is read is counted.
+  read_blocks(path, [&](std::string_view block) {
+    text.append(block);
+    if (text.size() <= limit) return;
     throw kernel::Error(
         kernel::ErrorKind::configuration,
         fmt::format("{}:1:1: the file has more than {} octets, which are the most that are read",
                     path.string(), limit));
-  }
+  });
   return text;
 }
 

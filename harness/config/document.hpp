@@ -203,6 +203,8 @@ struct Limits {
 // The whole file. Throws kernel::Error(configuration) when it cannot be read, when it is no regular file (a
 // pipe may never begin, a device never end), and when it has more than `limit` octets.
 std::string read_text(const std::filesystem::path& path, std::size_t limit = Limits{}.size);
+// The same of a file of any size, block by block.
+void read_blocks(const std::filesystem::path& path, const std::function<void(std::string_view)>& take);
 
 class Document {
  public:

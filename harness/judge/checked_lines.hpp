@@ -23,7 +23,9 @@ namespace fieldproof::judge {
 enum class Durability : std::uint8_t { written, synced };
 
 // FNV-1a: enough to know a torn or changed text; it guards against accidents only.
-std::uint64_t check_of(std::string_view text);
+inline constexpr std::uint64_t kCheckOfNothing = 0xcbf29ce484222325;
+// `so_far`: of what stands in front of the text.
+std::uint64_t check_of(std::string_view text, std::uint64_t so_far = kCheckOfNothing);
 
 // The text of the result of a line without its line break, or nothing when the line is not what was appended.
 std::optional<std::string_view> intact_result(std::string_view line);

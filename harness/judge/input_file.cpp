@@ -13,6 +13,12 @@ std::string hash_of(std::string_view content) {
   return fmt::format("{:016x}", check_of(content));
 }
 
+std::string hash_of_file(const std::filesystem::path& path) {
+  std::uint64_t check = kCheckOfNothing;
+  config::read_blocks(path, [&](std::string_view block) { check = check_of(block, check); });
+  return fmt::format("{:016x}", check);
+}
+
 nlohmann::ordered_json json_of(std::span<const InputFile> files) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const InputFile& file : files)

@@ -2,7 +2,7 @@
 // is the same.
 #pragma once
 
-#include <cstddef>
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
@@ -15,16 +15,15 @@ namespace fieldproof::judge {
 
 struct InputFile {
   std::string path;
-  std::string hash;  // hash_of(content); empty: it could not be read
+  std::string hash;  // of its content; empty: it could not be read
 
   friend bool operator==(const InputFile&, const InputFile&) = default;
 };
 
-// Of a program or library, in octets.
-inline constexpr std::size_t kLargestInput = std::size_t{1} << 30;
-
 // 16 hexadecimal digits over a content.
 std::string hash_of(std::string_view content);
+// Of a file of any size. Throws kernel::Error(configuration) for one that cannot be read.
+std::string hash_of_file(const std::filesystem::path& path);
 
 // [{"path": "node.json", "hash": "77148d8a4f1248d3"}], and read again.
 nlohmann::ordered_json json_of(std::span<const InputFile> files);
