@@ -13,7 +13,7 @@ std::string hash_of(std::string_view content) {
   return fmt::format("{:016x}", check_of(content));
 }
 
-std::string hash_of_file(const std::filesystem::path& path) {
+std::string hash_of_file(const std::string& path) {
   std::uint64_t check = kCheckOfNothing;
   config::read_blocks(path, [&](std::string_view block) { check = check_of(block, check); });
   return fmt::format("{:016x}", check);

@@ -2,7 +2,6 @@
 // is the same.
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
@@ -23,7 +22,7 @@ struct InputFile {
 // 16 hexadecimal digits over a content.
 std::string hash_of(std::string_view content);
 // Of a file of any size. Throws kernel::Error(configuration) for one that cannot be read.
-std::string hash_of_file(const std::filesystem::path& path);
+std::string hash_of_file(const std::string& path);
 
 // [{"path": "node.json", "hash": "77148d8a4f1248d3"}], and read again.
 nlohmann::ordered_json json_of(std::span<const InputFile> files);

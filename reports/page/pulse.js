@@ -18,8 +18,9 @@ function worstMeeting({level_ns: level, sampled_sixteenths: sixteenths, wrong_ns
     return {driven, begin, samples, hit: samples.filter((at) => wrong[driven].some(([from, to]) => at >= begin + from && at < begin + to))};
   }));
   const most = Math.max(...meetings.map(({hit}) => hit.length));
-  const best = meetings.filter(({hit, driven}) => hit.length === most && driven === meetings.find((one) => one.hit.length === most).driven);
-  return best[Math.floor(best.length / 2)];
+  const worst = meetings.filter(({hit}) => hit.length === most);
+  const alike = worst.filter(({driven}) => driven === worst[0].driven);
+  return alike[Math.floor(alike.length / 2)];
 }
 
 // What happens to the level, in words.
