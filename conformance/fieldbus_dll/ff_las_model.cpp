@@ -20,10 +20,12 @@ using kernel::Duration;
 using kernel::Time;
 
 constexpr std::int64_t kMostSilentSlots = 16;
+constexpr std::int64_t kKeepActiveSlots = 8;
 constexpr std::int64_t kLeastSilentSlots = 8;
 constexpr std::size_t kOctetsOfCheck = 2;
 constexpr std::size_t kOctetsOfProbeResponse = 2 + kOctetsOfCheck;
 constexpr std::size_t kOctetsAroundData = 5 + kOctetsOfCheck;
+constexpr std::size_t kOctetsOfIdle = 1 + kOctetsOfCheck;
 constexpr std::size_t kOctetsOfTransfer = 4 + kOctetsOfCheck;
 constexpr std::size_t kOctetsOfTime = 7 + kOctetsOfCheck;
 
@@ -50,7 +52,11 @@ Time FfLasModel::due() const {
 
 Time FfLasModel::silent_until() const {
   if (!is_scheduler_) return silent_since_ + claim_silence() + times(2);
-  return silent_since_ + times(kMostSilentSlots * rules().link.slot_time_octets);
+  const Time most = silent_since_ + times(kMostSilentSlots * rules().link.slot_time_octets);
+  // An item that leaves an IDLE no time when one is due is what ends the silence.
+  const Time idle = silent_since_ + times(kKeepActiveSlots * rules().link.slot_time_octets);
+  if (leaves_time(idle + frame_time(rules().link, kOctetsOfIdle), 1)) return most;
+  return std::max(most, next_said_item() + times(rules().scheduling_overhead_octets + 1));
 }
 
 bool FfLasModel::is_open(std::uint8_t node) const {

@@ -95,6 +95,8 @@ class MasterBench final : public CaseBench {
   // else.
   bool run_cycle();
   kernel::Duration longest_cycle() const;
+  // All cycles with which a ring is recognised.
+  kernel::Duration cycles_of_recognition() const;
   // The one that the master reports, at least a bit and at most the longest that there can be: nobody waits
   // for a number that an implementation has made up.
   kernel::Duration cycle_time() const;

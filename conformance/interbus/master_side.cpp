@@ -213,7 +213,8 @@ void MasterSide::stop(bool is_disturbed) {
   if (is_disturbed && was_running) armed_ = changed_answer();
   bench_.stop();
   if (is_disturbed && was_running) bench_.write_output(0, 0xFFFF);
-  bench_.run_until([this] { return bench_.status().state == MasterState::off; }, kernel::kSecond);
+  bench_.run_until([this] { return bench_.status().state == MasterState::off; },
+                   kernel::kSecond + 2 * bench_.longest_cycle());
   bench_.run_for(kernel::kMillisecond);
   armed_.reset();
   if (was_running && is_ring_right_) judge_stop(before, under_way);

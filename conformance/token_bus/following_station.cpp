@@ -141,7 +141,10 @@ bool FollowingStation::is_unsaid(const Frame& frame) const {
 // response, after a token, or from the station's own address nothing says.
 std::optional<token_bus::Frame> FollowingStation::understood(const Octets& octets) const {
   auto frame = TokenStation::understood(octets);
-  is_count_unsure_ = is_count_unsure_ || (has_passed_ && !is_in_ring());
+  if (has_passed_ && !is_in_ring()) {
+    is_count_unsure_ = true;
+    tokens_ = 0;
+  }
   if (frame) {
     is_doubtful_ = is_doubtful_ || is_unsaid(*frame);
     return frame;

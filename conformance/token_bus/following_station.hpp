@@ -104,7 +104,7 @@ class FollowingStation final : public token_bus::TokenStation {
   std::vector<std::size_t> tokens_to_windows_;
   mutable std::vector<std::size_t> last_claims_;
   mutable bool has_group_answered_ = false;  // in a window, and nothing was driven since
-  unsigned tokens_ = 0;                      // since the last window
+  mutable unsigned tokens_ = 0;              // since the last window, or since it was outside of the ring
   unsigned tokens_more_ = 0;                 // than the least number between two windows
 };
 

@@ -1,0 +1,104 @@
+// Subject: references of several protocols: sequences of which one was once accused, and the states that
+// walks go through.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "conformance/fieldbus_dll/suite.hpp"
+#include "conformance/interbus/suite.hpp"
+#include "conformance/reference_walks.hpp"
+#include "conformance/sequence_check.hpp"
+#include "conformance/token_bus/suite.hpp"
+#include "conformance/valve_bus/suite.hpp"
+#include "harness/kernel/sanitized.hpp"
+
+namespace fieldproof::conformance {
+namespace {
+
+struct TestedRole {
+  std::unique_ptr<Suite> suite;
+  const SequenceRole* sequences = nullptr;  // of the suite; none when there is no such role
+};
+
+TestedRole tested_role(const std::string& path) {
+  const std::string protocol = path.substr(0, path.find('/'));
+  TestedRole tested{protocol == "valve_bus"      ? valve_bus_suite()
+                    : protocol == "interbus"     ? interbus_suite()
+                    : protocol == "fieldbus_dll" ? fieldbus_dll_suite()
+                                                 : token_bus_suite()};
+  for (const SequenceRole& role : tested.suite->sequence_roles()) {
+    if (path == protocol + "/" + role.test_case.role()) tested.sequences = &role;
+  }
+  return tested;
+}
+
+struct OnceAccused {
+  const char* what;
+  const char* role;
+  field::Settings settings;
+  std::vector<NamedCommand> commands{};
+};
+
+class ReferenceSequencesTest : public testing::TestWithParam<OnceAccused> {};
+
+TEST_P(ReferenceSequencesTest, AreNotAccused) {
+  const TestedRole tested = tested_role(GetParam().role);
+  ASSERT_NE(tested.sequences, nullptr);
+  const SequenceVocabulary& vocabulary = tested.sequences->vocabulary;
+  const Sequence sequence{with_beginnings(vocabulary, {GetParam().commands}).beginnings.back(),
+                          GetParam().settings};
+  const judge::CaseResult result = run_sequence(*tested.suite, *tested.sequences, sequence, {}).result;
+  EXPECT_EQ(result.verdict, judge::Verdict::pass) << result.reason;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Roles, ReferenceSequencesTest,
+    testing::Values(OnceAccused{"a_stop_within_a_cycle_of_a_second",
+                                "interbus/master",
+                                {{"telegram_gap_millibits", 512'019}, {"end_telegrams", 1'000}},
+                                {{"early_order", {{"state", 0}, {"order", 0}}}}},
+                    OnceAccused{"a_recognition_with_cycles_of_two_seconds",
+                                "interbus/master",
+                                {{"telegram_gap_millibits", 1'000'000}, {"end_telegrams", 1'000}},
+                                {{"early_order", {{"state", 1}, {"order", 2}}}}},
+                    OnceAccused{"an_item_that_leaves_an_idle_no_time",
+                                "fieldbus_dll/ff_las",
+                                {{"response_delay_slots", 10}, {"inter_pdu_delay_octets", 47}}},
+                    OnceAccused{"tokens_that_were_not_passed_before_the_first_window",
+                                "token_bus/station",
+                                {{"transmitter_fault_limit", 8}},
+                                {{"failures", {{"times", 7}}}, {"many", {{"what", 0}, {"times", 17}}}}}),
+    [](const auto& one) { return std::string(one.param.what); });
+
+struct ToldApart {
+  const char* role;
+  bool is_so;
+};
+
+class ReferenceWalksTest : public testing::TestWithParam<ToldApart> {};
+
+// What queues and counts has states that only two commands or more tell apart: there, walks promise nothing
+// about machines of as many states. docs/limits.md says so of each role.
+TEST_P(ReferenceWalksTest, SingleCommandsTellItsStatesApart) {
+  if (kernel::kIsSanitized) GTEST_SKIP() << "not applicable: under sanitizers there are fewer states";
+  const TestedRole tested = tested_role(GetParam().role);
+  ASSERT_NE(tested.sequences, nullptr);
+  EXPECT_EQ(surprise_of(*tested.suite, *tested.sequences).empty(), GetParam().is_so) << GetParam().role;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Roles, ReferenceWalksTest,
+    testing::Values(ToldApart{"valve_bus/node", true}, ToldApart{"token_bus/translator", true},
+                    ToldApart{"interbus/slave", false}, ToldApart{"fieldbus_dll/ff_device", false},
+                    ToldApart{"fieldbus_dll/isa_dle", false}, ToldApart{"token_bus/channel_manager", false}),
+    [](const auto& one) {
+      std::string name = one.param.role;
+      std::ranges::replace(name, '/', '_');
+      return name;
+    });
+
+}  // namespace
+}  // namespace fieldproof::conformance
