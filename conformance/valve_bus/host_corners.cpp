@@ -112,6 +112,36 @@ HostStep refreshed_after_error() {
   });
 }
 
+// The rest of a frame, or a whole one, long after the node's last attempt and right after a write to another.
+void say_after_a_write(HostScene& scene) {
+  HostBench& bench = scene.bench;
+  const std::uint64_t before = bench.counters(scene.id).late;
+  bench.order(bench.write_to(scene.other));
+  const auto frame = bench.next_frame(bench.observation_timeout());
+  scene.judge.expect(frame.has_value(), "no_request", "the write is sent", "nothing was sent");
+  bench.note_write(frame->command());
+  for (const std::size_t octets : {std::size_t{3}, std::size_t{1}}) {
+    bench.wait(bench.delimiter());
+    bench.say(std::vector<std::uint8_t>(octets, 0x55));
+  }
+  bench.wait(2 * bench.delimiter());
+  scene.judge.expect(bench.counters(scene.id).late == before, "late_counted_after_a_request",
+                     "late frames are counted until the next request, which a write is",
+                     "the count of the node before it has grown");
+}
+
+HostStep said_after_a_write() {
+  return {"the PC orders a write to another node, and octets follow it", "no late frame is counted",
+          say_after_a_write};
+}
+
+HostStep not_read_back() {
+  return expected("no read follows for two time-outs", [](HostScene& scene) {
+    expect_no_request(scene.bench, scene.judge, 2 * scene.bench.time_out(), "read_back_after_error",
+                      "the write has ended in error 4");
+  });
+}
+
 }  // namespace
 
 std::vector<HostCase> host_corner_cases() {
@@ -171,6 +201,29 @@ std::vector<HostCase> host_corner_cases() {
                 {power_cycled(), write(), polled_again(), polled_again(),
                  error(HostErrorKind::not_acknowledged), refreshed_after_error(), power_cycled()}},
                {.acknowledged_writes = true, .verifies_writes = false}),
+      on_chart({.id = "valve_bus/host/cycle/unacknowledged_write_is_not_read_back",
+                .purpose = "RH-29",
+                .requirement = "A write that nobody has acknowledged is not read back.",
+                .reference = valve_sources::own("none follows error 4"),
+                .tags = {"must", "option"},
+                .catches = {{"reads_back_after_error_4", "read_back_after_error"}},
+                .not_applicable = for_both(for_switched_power(), for_quick_frames(4))},
+               {{1, 5},
+                {power_cycled(), write(), polled_again(), polled_again(),
+                 error(HostErrorKind::not_acknowledged), not_read_back(), power_cycled()}},
+               {.acknowledged_writes = true, .verifies_writes = true}),
+      on_chart({.id = "valve_bus/host/retry/late_frames_are_counted_until_a_write",
+                .purpose = "RH-09",
+                .requirement = "Late frames are those of the node whose last attempt nothing answered, until "
+                               "the next request, which a write to another node is, too.",
+                .reference = valve_sources::own("late frames are counted until the next request"),
+                .tags = {"must"},
+                .catches = {{"late_until_a_read", "late_counted_after_a_request"}},
+                .not_applicable = for_switched_power()},
+               {{2, 20},
+                {power_cycled(), read(), polled_again(), polled_again(), error(HostErrorKind::no_response),
+                 said_after_a_write(), power_cycled()}},
+               {.acknowledged_writes = false, .verifies_writes = false}),
   };
 }
 

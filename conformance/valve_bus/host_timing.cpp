@@ -158,6 +158,20 @@ std::vector<HostCase> host_timing_cases() {
                    "and two bits after it, from 10 us away",
                    right_octets, latest_far_response),
             reported()}}),
+      on_chart(
+          {.id = "valve_bus/host/timing/too_early_response_is_none_at_all_rates",
+           .purpose = "RH-30",
+           .requirement = "At every bit rate a response that begins 1.2 characters after the request is a "
+                          "wrong attempt.",
+           .reference = valve_sources::own("turnaround and time-out"),
+           .tags = {"must", "timing"},
+           .catches = {{"earliest_response_fixed", "early_response_taken"}},
+           .not_applicable = for_settable_dip()},
+          {{dip_positions(), 10 * dip_positions()},
+           {powered_up_at_each_position(), read(),
+            answer("the node answers rightly 1.2 characters after the request", right_octets,
+                   [](HostScene& scene) { return scene.bench.characters(1.2); }),
+            refused("early_response_taken", "it began less than 1.5 characters after the request")}}),
   };
 }
 

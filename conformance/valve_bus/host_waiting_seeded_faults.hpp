@@ -269,4 +269,42 @@ class RepeatsFromTheRing : public Host {
   std::size_t slot_ = 0;
 };
 
+// What is right at 375 kbit/s.
+class EarliestResponseFixed : public Host {
+  using Host::Host;
+  Duration shortest_turnaround_time() const override { return 44 * kernel::kMicrosecond; }
+};
+
+class ReadsBackAfterError4 : public Host {
+  using Host::Host;
+  void fail(HostErrorKind kind, Time now) override {
+    const Command failed = exchange()->command;
+    const bool is_write = failed.command == rules().write_command;
+    Host::fail(kind, now);
+    if (!is_write || !configuration().verifies_writes) return;
+    write(std::array{failed.id, static_cast<std::uint8_t>(rules().read_command), failed.data0, failed.data1},
+          now);
+  }
+};
+
+// Writes do not end it.
+class LateUntilARead : public Host {
+  using Host::Host;
+  void fail(HostErrorKind kind, Time now) override {
+    if (kind == HostErrorKind::no_response) silent_ = exchange()->command.id;
+    Host::fail(kind, now);
+  }
+  bool awaits_response(const Exchange& exchange) const override {
+    if (Host::awaits_response(exchange)) silent_.reset();
+    return Host::awaits_response(exchange);
+  }
+  void on_stray(const valve_bus::CollectedFrame& frame, Time now) override {
+    if (!silent_) return Host::on_stray(frame, now);
+    const auto before = counted(*silent_).late;
+    Host::on_stray(frame, now);
+    counted(*silent_).late = before + 1;
+  }
+  mutable std::optional<std::uint8_t> silent_;
+};
+
 }  // namespace fieldproof::conformance::host_seeded_faults

@@ -86,7 +86,9 @@ void AttachedHost::write(iut::Item item, std::uint64_t value, kernel::Time when)
   } else if (item == kFifoRoom) {
     fifo_room_ = value;
   } else if (item == kOverflow) {
-    has_overflowed_ = value != 0;
+    if (value > 1)
+      iut::refuse_impossible(fmt::format("writes {} to item {}, which is 1 after an overflow", value, item));
+    has_overflowed_ = value == 1;
   } else if (item >= kIds && kind < kCounterItems.size()) {
     counters_.at(kind).at(item % kIds) = value;
   } else {

@@ -134,6 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         WrongAct{"as a response", [](iut::Bench& bench) { bench.write(kResponse, 0x0200'0000, kCalledAt); }},
         WrongAct{"error of kind 9", [](iut::Bench& bench) { bench.write(kError, 0x0905, kCalledAt); }},
+        WrongAct{"writes 2 to item 4", [](iut::Bench& bench) { bench.write(kOverflow, 2, kCalledAt); }},
         WrongAct{"item 5, which a host does not have",
                  [](iut::Bench& bench) { bench.write(5, 0, kCalledAt); }},
         WrongAct{"item 1280, which", [](iut::Bench& bench) { bench.write(0x500, 0, kCalledAt); }},
