@@ -20,7 +20,6 @@ using kernel::Duration;
 using kernel::Time;
 
 constexpr std::int64_t kMostSilentSlots = 16;
-constexpr std::int64_t kKeepActiveSlots = 8;
 constexpr std::int64_t kLeastSilentSlots = 8;
 constexpr std::size_t kOctetsOfCheck = 2;
 constexpr std::size_t kOctetsOfProbeResponse = 2 + kOctetsOfCheck;
@@ -54,7 +53,7 @@ Time FfLasModel::silent_until() const {
   if (!is_scheduler_) return silent_since_ + claim_silence() + times(2);
   const Time most = silent_since_ + times(kMostSilentSlots * rules().link.slot_time_octets);
   // An item that leaves an IDLE no time when one is due is what ends the silence.
-  const Time idle = silent_since_ + times(kKeepActiveSlots * rules().link.slot_time_octets);
+  const Time idle = silent_since_ + times(kLeastSilentSlots * rules().link.slot_time_octets);
   if (leaves_time(idle + frame_time(rules().link, kOctetsOfIdle), 1)) return most;
   return std::max(most, next_said_item() + times(rules().scheduling_overhead_octets + 1));
 }

@@ -135,17 +135,8 @@ kernel::Duration MasterBench::cycle_time() const {
   return std::clamp(status().cycle_time, kernel::levels_duration(1, rules_.bit_rate), longest_cycle());
 }
 
-namespace {
-
-// The stations are switched on one after another.
-std::int64_t cycles_to_recognise(std::size_t stations) {
-  return static_cast<std::int64_t>(8 + 5 * stations);
-}
-
-}  // namespace
-
-kernel::Duration MasterBench::cycles_of_recognition() const {
-  return cycles_to_recognise(ring_->stations().size()) * longest_cycle();
+std::int64_t MasterBench::cycles_of_recognition() const {
+  return static_cast<std::int64_t>(8 + 5 * ring_->stations().size());
 }
 
 bool MasterBench::wait_for_run() {
@@ -156,8 +147,8 @@ bool MasterBench::wait_for_run() {
     return is_running || state == MasterState::bus_stop;
   };
   // Each cycle begins after what was said ahead before.
-  if (!run_until(is_over, 200 * kernel::kMillisecond + cycles_of_recognition()))
-    run_until(is_over, cycles_to_recognise(ring_->stations().size()) * said_ahead());
+  if (!run_until(is_over, 200 * kernel::kMillisecond + cycles_of_recognition() * longest_cycle()))
+    run_until(is_over, cycles_of_recognition() * said_ahead());
   return is_running;
 }
 

@@ -95,8 +95,8 @@ class MasterBench final : public CaseBench {
   // else.
   bool run_cycle();
   kernel::Duration longest_cycle() const;
-  // All cycles with which a ring is recognised.
-  kernel::Duration cycles_of_recognition() const;
+  // At most so many cycles recognise the ring, whose stations are switched on one after another.
+  std::int64_t cycles_of_recognition() const;
   // The one that the master reports, at least a bit and at most the longest that there can be: nobody waits
   // for a number that an implementation has made up.
   kernel::Duration cycle_time() const;

@@ -68,7 +68,7 @@ kernel::Duration MasterSide::longest_recognition() const {
       rules.max_stations * (rules.forward_delay_half_bits + rules.return_delay_half_bits) * half_bit;
   const kernel::Duration cable =
       kernel::Duration{2 * static_cast<std::int64_t>(rules.max_cable_m) * rules.cable_delay_ps_per_m};
-  return kernel::kSecond + bench_.cycles_of_recognition() +
+  return kernel::kSecond + bench_.cycles_of_recognition() * bench_.longest_cycle() +
          2 * (rules.silence_limit + 2 * rules.silence_tolerance) +
          rules.stop_after_bad_cycles * (stations + cable);
 }
