@@ -3,6 +3,7 @@
 #include <concepts>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,14 +42,18 @@ struct ChartStep {
   std::string stimulus;  // what the tester does: "the PC orders a read"; empty: it waits for what must come
   std::string expected;  // what must come: "the host polls the node"; empty: nothing is required
   std::function<void(Scene&)> run;
-  Rounds times{};                  // of the steps within this one
-  std::vector<ChartStep> steps{};  // in place of `run`, see `repeated`
+  Rounds times{};  // of the steps within this one
+  // In place of `run`, see `repeated`; else null. Shared, because g++ 12 fails on a vector of its own type
+  // here.
+  std::shared_ptr<const std::vector<ChartStep>> steps{};
 
   // A step of a scene is one of each scene that is derived from it.
   template <typename More>
     requires(std::derived_from<More, Scene> && !std::same_as<More, Scene>)
   operator ChartStep<More>() const {
-    return {stimulus, expected, run, times, {steps.begin(), steps.end()}};
+    if (!steps) return {stimulus, expected, run};
+    using Steps = std::vector<ChartStep<More>>;
+    return {stimulus, expected, run, times, std::make_shared<const Steps>(steps->begin(), steps->end())};
   }
 };
 
@@ -66,7 +71,8 @@ ChartStep<Scene> expected(std::string text, std::function<void(Scene&)> run) {
 // within each other, and once at least.
 template <typename Scene>
 ChartStep<Scene> repeated(Rounds times, std::vector<ChartStep<Scene>> steps) {
-  return {{}, {}, {}, times, std::move(steps)};
+  using Steps = std::vector<ChartStep<Scene>>;
+  return {{}, {}, {}, times, std::make_shared<const Steps>(std::move(steps))};
 }
 
 // A list that each of the rounds walks over: "each bit of the check", and how many there are. What has the
@@ -109,10 +115,10 @@ template <typename Scene>
 Words words_of(const std::vector<ChartStep<Scene>>& steps) {
   Words words;
   for (const ChartStep<Scene>& step : steps) {
-    if (step.steps.empty()) {
+    if (!step.steps) {
       words.add(step.stimulus, step.expected);
     } else {
-      words.add_repeated(words_of(step.steps), step.times);
+      words.add_repeated(words_of(*step.steps), step.times);
     }
   }
   return words;
@@ -123,7 +129,7 @@ template <typename Scene>
 std::size_t run_steps(const std::vector<ChartStep<Scene>>& steps, Scene& scene, auto& bench, CaseJudge& judge,
                       const std::vector<std::string>& lines, std::size_t line = 0) {
   for (const ChartStep<Scene>& step : steps) {
-    if (step.steps.empty()) {
+    if (!step.steps) {
       judge.begin_step(lines[line++]);
       step.run(scene);
       continue;
@@ -132,7 +138,7 @@ std::size_t run_steps(const std::vector<ChartStep<Scene>>& steps, Scene& scene, 
     const unsigned turns = bench.volume(step.times.quick, step.times.full);
     for (unsigned turn = 0; turn < turns; ++turn) {
       if constexpr (requires { scene.turn; }) scene.turn = turn;
-      line = run_steps(step.steps, scene, bench, judge, lines, first);
+      line = run_steps(*step.steps, scene, bench, judge, lines, first);
     }
   }
   return line;

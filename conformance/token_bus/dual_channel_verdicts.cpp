@@ -22,10 +22,6 @@ struct Train {
 // The last symbols of what testers drive: an end delimiter.
 constexpr std::size_t kTrainEnd = 8;
 
-std::string flipped_at(std::string text, std::size_t at) {
-  text.at(at) = text.at(at) == '0' ? '1' : '0';
-  return text;
-}
 // Of so many octets.
 std::string frame_of(ManagerScene& scene, std::size_t octets) {
   return scene.frame(octets - token_bus::frame_octets(scene.bench.configuration().rules, 0));

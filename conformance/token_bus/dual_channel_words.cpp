@@ -232,11 +232,6 @@ std::string spoiled_at(std::string text, std::size_t at) {
   if (at < text.size()) text[at] = 'B';
   return text;
 }
-std::string flipped_at(std::string text, std::size_t at) {
-  text.at(at) = text.at(at) == '0' ? '1' : '0';
-  return text;
-}
-
 // A limit can be met exactly where a symbol lasts a whole number of nanoseconds.
 std::int64_t exact_place(std::int64_t place, const token_bus::Rules& rules) {
   constexpr std::int64_t kTwoSeconds = 2'000'000'000;  // ns

@@ -213,6 +213,11 @@ bool SideLog::was_driven(kernel::Time from, kernel::Time until) const {
 
 // ---- two texts ----
 
+std::string flipped_at(std::string text, std::size_t at) {
+  text.at(at) = text.at(at) == '0' ? '1' : '0';
+  return text;
+}
+
 std::string without_end(std::string text, char idle) {
   while (text.ends_with(idle)) text.pop_back();
   return text;

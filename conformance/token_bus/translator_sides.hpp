@@ -96,6 +96,8 @@ class SideLog final : public segment::Tap {
 
 // ---- two texts ----
 
+// 1 in place of 0, and the other way round.
+std::string flipped_at(std::string text, std::size_t at);
 std::string without_end(std::string text, char idle);
 std::string without_ends(std::string text, char idle);
 // Both from shortly in front of where they differ.
