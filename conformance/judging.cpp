@@ -12,7 +12,7 @@ void CaseJudge::add(judge::Verdict verdict, std::string_view reason, Mismatch si
   judge::Finding finding;
   finding.verdict = verdict;
   finding.reason = reason;
-  finding.requirement = test_case_.requirement;
+  finding.requirement = test_case_.requirement_of(reason);
   finding.reference = test_case_.reference_of(reason);
   finding.expected = std::move(sighting.expected);
   finding.actual = std::move(sighting.actual);

@@ -1,5 +1,5 @@
-// Subject: references of several protocols: sequences of which one was once accused, and the states that
-// walks go through.
+// Subject: the sequence roles of several protocols: rules of their findings, references that were once
+// accused, and the states that walks go through.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,6 +34,28 @@ TestedRole tested_role(const std::string& path) {
   }
   return tested;
 }
+
+class SequenceRulesTest : public testing::TestWithParam<const char*> {};
+
+// A sequence is about everything at once: its finding says which rule was broken, not that one of them was.
+TEST_P(SequenceRulesTest, EachDeclaredReasonHasOne) {
+  const TestedRole tested = tested_role(GetParam());
+  ASSERT_NE(tested.sequences, nullptr);
+  const TestCase& all = tested.sequences->test_case;
+  for (const DerivedCatch& derived : tested.sequences->derived_catches)
+    EXPECT_NE(all.requirement_of(derived.caught.reason), all.requirement) << derived.caught.reason;
+}
+
+INSTANTIATE_TEST_SUITE_P(Roles, SequenceRulesTest,
+                         testing::Values("interbus/slave", "interbus/master", "valve_bus/node",
+                                         "valve_bus/host", "fieldbus_dll/ff_device", "fieldbus_dll/ff_las",
+                                         "fieldbus_dll/isa_dle", "fieldbus_dll/isa_las", "token_bus/station",
+                                         "token_bus/translator", "token_bus/channel_manager"),
+                         [](const auto& role) {
+                           std::string name = role.param;
+                           std::ranges::replace(name, '/', '_');
+                           return name;
+                         });
 
 struct OnceAccused {
   const char* what;

@@ -11,6 +11,11 @@ std::string TestCase::role() const {
   return id.substr(first + 1, id.find('/', first + 1) - first - 1);
 }
 
+std::string_view TestCase::requirement_of(std::string_view reason) const {
+  const auto rule = std::ranges::find(rules, reason, &ReasonRule::reason);
+  return rule == rules.end() ? std::string_view(requirement) : rule->rule;
+}
+
 const judge::Reference& TestCase::reference_of(std::string_view reason) const {
   for (const PartialSource& detail : details) {
     if (std::ranges::find(detail.reasons, reason) != detail.reasons.end()) return detail.reference;

@@ -39,12 +39,20 @@ struct PartialSource {
   std::vector<std::string> reasons;
 };
 
+// What the page requires where an implementation differs for this reason, in one sentence: the requirement of
+// a finding of a case that is about everything at once.
+struct ReasonRule {
+  std::string_view reason;
+  std::string_view rule;
+};
+
 struct TestCase {
   std::string id;       // "PROTOCOL/ROLE/data_cycle/weight_four_codeword_is_accepted"; never reused
   std::string purpose;  // the label of the test purpose, "IS-14"
   std::string requirement;
   judge::Reference reference;
   std::vector<PartialSource> details{};
+  std::span<const ReasonRule> rules{};  // must outlive the case; may be none
   std::string stimulus{};
   std::string expected{};
   std::vector<std::string> steps{};  // where the case is a sequence, see conformance/chart.hpp
@@ -56,6 +64,8 @@ struct TestCase {
   std::function<std::optional<std::string>(const judge::Pics&)> not_applicable{};
 
   std::string role() const;  // second part of the id
+  // What a finding with this reason says is required: its rule, else the requirement of the case.
+  std::string_view requirement_of(std::string_view reason) const;
   // What a finding with this reason rests on.
   const judge::Reference& reference_of(std::string_view reason) const;
   // What a pass rests on: the case's own source and every detail, because a failure in either would be one of
@@ -108,7 +118,8 @@ struct Setup {
   Volume volume = Volume::full;
   std::optional<std::size_t> sequences{};  // of each derived case; nothing: as many as the volume says
   iut::PeerLimits limits{};                // of implementations in other processes
-  bool record = false;  // keep the trace and what the implementations did (bounded) in the outcome
+  bool explains = true;  // of sequences that fail: the smallest, and what decides; false: the verdict only
+  bool record = false;   // keep the trace and what the implementations did (bounded) in the outcome
   // The implementations of this program are called as those outside are, too: what can be recorded of them,
   // and played back, is the same to the bit.
   bool as_device = false;

@@ -1,6 +1,7 @@
 #include "conformance/fieldbus_dll/ff_las_sequence.hpp"
 
 #include "conformance/fieldbus_dll/ff_cases.hpp"
+#include "conformance/fieldbus_dll/ff_las_reasons.hpp"
 #include "conformance/fieldbus_dll/ff_las_sequence_run.hpp"
 #include "conformance/fieldbus_dll/ff_las_vocabulary.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
@@ -42,6 +43,7 @@ const SequenceRole& ff_las_sequence_role() {
            "live, with the priority that rotations lead to, and sends what has changed.",
        .reference = link_sources::ff_paper("the scheduler: CD by its schedule, tokens in between"),
        .details = ff_las_sequence_details(),
+       .rules = ff_las_reasons(),
        .stimulus =
            "Commands at random, with half bits and bits that are flipped and octets that are missing.",
        .expected = "What a model of the rules says.",

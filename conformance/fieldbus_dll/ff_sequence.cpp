@@ -1,6 +1,7 @@
 #include "conformance/fieldbus_dll/ff_sequence.hpp"
 
 #include "conformance/fieldbus_dll/ff_cases.hpp"
+#include "conformance/fieldbus_dll/ff_reasons.hpp"
 #include "conformance/fieldbus_dll/ff_sequence_run.hpp"
 #include "conformance/fieldbus_dll/ff_vocabulary.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
@@ -33,6 +34,7 @@ const SequenceRole& ff_device_sequence_role() {
            "allows, in time, and nothing else.",
        .reference = link_sources::memory("functions of a basic device"),
        .details = ff_sequence_details(),
+       .rules = ff_reasons(),
        .stimulus =
            "Commands at random, with half bits and bits that are flipped and octets that are missing.",
        .expected = "What a model of the rules says.",

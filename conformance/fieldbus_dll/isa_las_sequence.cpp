@@ -1,6 +1,7 @@
 #include "conformance/fieldbus_dll/isa_las_sequence.hpp"
 
 #include "conformance/fieldbus_dll/isa_cases.hpp"
+#include "conformance/fieldbus_dll/isa_las_reasons.hpp"
 #include "conformance/fieldbus_dll/isa_las_sequence_run.hpp"
 #include "conformance/fieldbus_dll/isa_las_vocabulary.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
@@ -35,6 +36,7 @@ const SequenceRole& isa_las_sequence_role() {
            "supervises it, sends its own data in between and hands the link over when it must.",
        .reference = link_sources::isa_paper("the link active scheduler and its timers"),
        .details = isa_las_sequence_details(),
+       .rules = isa_las_reasons(),
        .stimulus =
            "Holders at random, and returns with half bits and bits that are flipped and octets that are "
            "missing.",

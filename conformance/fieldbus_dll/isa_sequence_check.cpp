@@ -8,6 +8,7 @@
 
 #include "conformance/fieldbus_dll/isa_cases.hpp"
 #include "conformance/fieldbus_dll/isa_model.hpp"
+#include "conformance/fieldbus_dll/isa_reasons.hpp"
 #include "conformance/fieldbus_dll/isa_vocabulary.hpp"
 #include "conformance/fieldbus_dll/link_sequence.hpp"
 #include "conformance/fieldbus_dll/link_transmission.hpp"
@@ -360,6 +361,7 @@ const SequenceRole& isa_dle_sequence_role() {
            "in time, and nothing else.",
        .reference = link_sources::isa_paper("tokens, compelled data and their timers"),
        .details = isa_check_details(),
+       .rules = isa_reasons(),
        .stimulus =
            "Commands at random, with half bits and bits that are flipped and octets that are missing.",
        .expected = "What a model of the rules says.",

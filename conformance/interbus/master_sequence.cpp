@@ -5,6 +5,7 @@
 
 #include "conformance/commands_text.hpp"
 #include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/master_reasons.hpp"
 #include "conformance/interbus/master_side.hpp"
 #include "conformance/interbus/master_side_notes.hpp"
 #include "conformance/interbus/master_vocabulary.hpp"
@@ -158,6 +159,7 @@ const SequenceRole& master_sequence_role() {
            "Whatever comes back and is ordered in whatever order, a master accepts right cycles and no "
            "others, shows their inputs, sends the outputs of its application, and reports what it finds.",
        .reference = sources::from_memory("what a master does with a cycle, with its ring and its orders"),
+       .rules = master_reasons(),
        .stimulus = "Answers, orders and rings at random, with flipped levels and lost telegrams.",
        .expected = "What the reference sends and reports when it is answered and ordered the same.",
        .tags = {},

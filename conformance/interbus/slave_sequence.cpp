@@ -9,6 +9,7 @@
 #include "conformance/interbus/slave_acts.hpp"
 #include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_codings.hpp"
+#include "conformance/interbus/slave_reasons.hpp"
 #include "conformance/sequence_settings.hpp"
 #include "harness/field/walk.hpp"
 #include "harness/kernel/error.hpp"
@@ -111,6 +112,7 @@ const SequenceRole& slave_sequence_role() {
            "a slave passes on and shows what a right one does.",
        .reference = sources::from_memory("what a slave does with a cycle, and with a rejected one"),
        .details = details::answer(),
+       .rules = slave_reasons(),
        .stimulus =
            "Cycles, telegrams, silences and all else at random, with flipped levels and lost telegrams.",
        .expected =

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "conformance/token_bus/dual_channel_cases.hpp"
+#include "conformance/token_bus/dual_channel_reasons.hpp"
 #include "conformance/token_bus/dual_channel_words.hpp"
 #include "conformance/token_bus/sides_sequence.hpp"
 #include "protocols/token_bus/dual_channel.hpp"
@@ -257,6 +258,7 @@ const SequenceRole& channel_manager_sequence_role() {
                       "requested and faults are reported as the rules of the manager say.",
        .reference = token_sources::own("choice between two channels"),
        .details = {},
+       .rules = dual_channel_reasons(),
        .stimulus = "Commands at random, with symbols that are spoiled or missing.",
        .expected = "What a reference does on a bench of its own.",
        .tags = {},

@@ -5,6 +5,7 @@
 #include "conformance/token_bus/ring_around.hpp"
 #include "conformance/token_bus/station_cases.hpp"
 #include "conformance/token_bus/station_comparison.hpp"
+#include "conformance/token_bus/station_reasons.hpp"
 #include "conformance/token_bus/station_tester.hpp"
 #include "conformance/token_bus/station_twin.hpp"
 
@@ -244,6 +245,7 @@ const SequenceRole& token_station_sequence_role() {
                       "machine says, and nothing else.",
        .reference = token_sources::memory("access control machine"),
        .details = token_details(),
+       .rules = station_reasons(),
        .stimulus = "Commands at random, with half bits that are flipped and octets that are missing.",
        .expected = "What a reference station does on its twin of the line.",
        .tags = {},

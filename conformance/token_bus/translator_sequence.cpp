@@ -5,6 +5,7 @@
 #include "conformance/token_bus/sides_sequence.hpp"
 #include "conformance/token_bus/translator_cases.hpp"
 #include "conformance/token_bus/translator_comparison.hpp"
+#include "conformance/token_bus/translator_reasons.hpp"
 #include "conformance/token_bus/translator_scene.hpp"
 #include "conformance/token_bus/translator_words.hpp"
 #include "protocols/token_bus/translator.hpp"
@@ -273,6 +274,7 @@ const SequenceRole& translator_sequence_role() {
            "indicates what its tables say, and nothing else.",
        .reference = token_sources::own("table of decoding, management mode"),
        .details = {},
+       .rules = translator_reasons(),
        .stimulus = "Commands at random, with bits that are inverted, missing or spoiled.",
        .expected =
            "What references do on benches of their own, as late as they may be and at once; where these "

@@ -10,6 +10,7 @@
 #include "conformance/valve_bus/host_cases.hpp"
 #include "conformance/valve_bus/host_deeds.hpp"
 #include "conformance/valve_bus/host_orders.hpp"
+#include "conformance/valve_bus/host_reasons.hpp"
 #include "conformance/valve_bus/host_side.hpp"
 #include "conformance/valve_bus/host_vocabulary.hpp"
 
@@ -300,6 +301,7 @@ const SequenceRole& host_sequence_role() {
                       "repeats a read that is not answered well, and reports the end of each.",
        .reference = valve_sources::own("requests, repetitions and reports of the host module"),
        .details = host_sequence_details(),
+       .rules = host_reasons(),
        .stimulus = "Orders and answers at random, with flipped bits, dropped characters and gaps.",
        .expected = "What the reference sends and reports when it is ordered and answered the same.",
        .tags = {},

@@ -1,6 +1,7 @@
 #include "conformance/valve_bus/node_sequence.hpp"
 
 #include "conformance/valve_bus/node_cases.hpp"
+#include "conformance/valve_bus/node_reasons.hpp"
 #include "conformance/valve_bus/node_sequence_run.hpp"
 #include "conformance/valve_bus/node_vocabulary.hpp"
 
@@ -37,6 +38,7 @@ const SequenceRole& node_sequence_role() {
                       "node's own, and by nothing else.",
        .reference = valve_sources::paper("frames, block check, what a node does with a command"),
        .details = sequence_details(),
+       .rules = node_reasons(),
        .stimulus = "Commands at random, with flipped bits, dropped characters and gaps.",
        .expected = "What the reference does with what arrived, within the times of the rules.",
        .tags = {},

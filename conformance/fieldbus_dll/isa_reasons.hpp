@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+
+#include "conformance/test_case.hpp"
+
+// Which rule of the page is broken, for each reason for which a sequence for a basic station of the profile
+// ISA-D fails.
+namespace fieldproof::conformance {
+
+std::span<const ReasonRule> isa_reasons();
+
+}  // namespace fieldproof::conformance

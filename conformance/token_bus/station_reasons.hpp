@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+
+#include "conformance/test_case.hpp"
+
+// Which rule of protocols/token_bus/README.md a station has broken, for each reason that a sequence of
+// commands may end with.
+namespace fieldproof::conformance {
+
+std::span<const ReasonRule> station_reasons();
+
+}  // namespace fieldproof::conformance
