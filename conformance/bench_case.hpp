@@ -14,6 +14,17 @@
 // one run, chapters of cases, and a canary after them.
 namespace fieldproof::conformance {
 
+inline constexpr std::size_t kAllOfFamily = ~std::size_t{0};
+
+// Sequences that a case is about, and how one is run.
+template <typename Bench>
+struct SequenceFamily {
+  std::function<std::vector<Sequence>(kernel::Random random)> all;
+  std::size_t quick;  // how many of them a run takes, others with each seed
+  std::size_t full;
+  std::function<void(const Sequence&, Bench&, CaseJudge&)> run;
+};
+
 template <typename Bench, typename Needs>
 struct BenchCase {
   using BenchType = Bench;
@@ -23,6 +34,8 @@ struct BenchCase {
   Needs needs{};
   // In which an IUT drives when it is asked, where those of the case do not let it; absent: they do.
   std::optional<Needs> asked_with{};
+  // Absent: it has a procedure. Each sequence on a bench of its own, as those that are derived.
+  std::optional<std::vector<SequenceFamily<Bench>>> families{};
 };
 
 // The same case, asked with these.

@@ -12,6 +12,7 @@
 
 #include "conformance/bench_case.hpp"
 #include "conformance/running_case.hpp"
+#include "conformance/sequence_families.hpp"
 #include "conformance/suite.hpp"
 #include "harness/field/pics.hpp"
 
@@ -111,8 +112,17 @@ RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
     if (has_to_drive) require_driven(one, setting, result);
     return result;
   };
-  row.run = [role, run_case](const TestCase& test_case, RunningCase& run) {
-    Outcome outcome{run_case(role.find(test_case), run, true), {}};
+  const auto run_sequences = [role, run_case](const Case& one, RunningCase& run) {
+    return run_families(one,
+                        {.vocabulary = role.sequences->role().vocabulary,
+                         .seed = run.setup().seed,
+                         .volume = run.setup().volume,
+                         .most_shrinking_commands = run.explains() ? kShrinkingCommands : 0},
+                        [&](const Case& asked) { return run_case(asked, run, false); });
+  };
+  row.run = [role, run_case, run_sequences](const TestCase& test_case, RunningCase& run) {
+    const Case one = role.find(test_case);
+    Outcome outcome{one.families ? run_sequences(one, run) : run_case(one, run, true), {}};
     run.keep(outcome);
     return outcome;
   };

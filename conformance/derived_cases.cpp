@@ -8,6 +8,7 @@
 
 #include "conformance/commands_text.hpp"
 #include "conformance/judging.hpp"
+#include "conformance/sequence_contrast.hpp"
 #include "conformance/sequence_shrink.hpp"
 #include "harness/kernel/sanitized.hpp"
 
@@ -48,12 +49,18 @@ std::string commands_text(const Sequence& sequence, const SequenceVocabulary& vo
 // What comes of the sequences of one case.
 class DerivedResult {
  public:
-  explicit DerivedResult(const DerivedRun& given) : given_(given) {
+  explicit DerivedResult(const DerivedRun& given) : given_(given), part_(given.parts.data()) {
     worst_ = CaseJudge(given.test_case).run_procedure([](CaseJudge&) {});
     worst_.has_driven = false;
   }
 
-  // False: it fails, and nothing needs to be run any more.
+  // False: one fails, and nothing needs to be run any more.
+  bool add(const DerivedPart& part) {
+    part_ = &part;
+    return std::ranges::all_of(part.derived.sequences,
+                               [this](const Sequence& sequence) { return add(sequence); });
+  }
+
   bool add(const Sequence& sequence) {
     ++run_;
     judge::CaseResult one = run(sequence);
@@ -77,18 +84,20 @@ class DerivedResult {
     if (worst_.verdict == Verdict::pass && !worst_.has_driven) add(one_of_each(given_.vocabulary));
     if (worst_.verdict == Verdict::pass && !worst_.has_driven) doubt_silence();
     measure("sequences", run_);
-    if (given_.derived.singles > 0) {
-      measure("about one thing", given_.derived.taken);
-      measure("about one thing there are", given_.derived.singles);
+    const std::size_t singles = sum_of([](const DerivedSequences& one) { return one.singles; });
+    if (singles > 0) {
+      measure("about one thing", sum_of([](const DerivedSequences& one) { return one.taken; }));
+      measure("about one thing there are", singles);
     }
-    for (const auto& [name, count] : given_.derived.counts) measure(name, count);
+    for (const DerivedPart& part : given_.parts)
+      for (const auto& [name, count] : part.derived.counts) measure(name, count);
     return std::move(worst_);
   }
 
  private:
   // Every run counts, whatever for.
   judge::CaseResult run(const Sequence& sequence) {
-    judge::CaseResult one = given_.run(sequence);
+    judge::CaseResult one = part_->run(sequence);
     worst_.fingerprint = (worst_.fingerprint ^ one.fingerprint) * kFingerprintFactor;
     worst_.virtual_time += one.virtual_time;
     worst_.has_driven = worst_.has_driven || one.has_driven;
@@ -100,7 +109,8 @@ class DerivedResult {
 
   void report(const Sequence& sequence, judge::CaseResult one) {
     for (judge::Finding& finding : one.findings) {
-      finding.step = fmt::format("sequence {} of {}: {}", run_, given_.derived.sequences.size(),
+      finding.step = fmt::format("sequence {} of {}: {}", run_,
+                                 sum_of([](const DerivedSequences& all) { return all.sequences.size(); }),
                                  commands_text(sequence, given_.vocabulary));
     }
     worst_.verdict = one.verdict;
@@ -111,20 +121,27 @@ class DerivedResult {
 
   // One that crashes or hangs is not made to do it again and again.
   void make_smaller(const Sequence& sequence) {
-    if (worst_.verdict != Verdict::fail || worst_.reason.starts_with(kOfImplementation)) return;
     std::size_t left = given_.most_shrinking_commands;
+    if (left == 0 || worst_.verdict != Verdict::fail || worst_.reason.starts_with(kOfImplementation)) return;
     const std::string reason = worst_.reason;
-    const auto fails = [&](const Sequence& candidate) {
+    const SequenceShows shows = [&](const Sequence& candidate) -> std::optional<bool> {
       const std::size_t cost = candidate.commands.size() + 1;
-      if (cost > left) return false;
+      if (cost > left) return std::nullopt;
       left -= cost;
       const judge::CaseResult one = run(candidate);
-      return one.verdict == Verdict::fail && one.reason == reason;
+      if (one.verdict == Verdict::pass) return false;
+      if (one.verdict != Verdict::fail || one.reason != reason) return std::nullopt;
+      return true;
     };
+    const auto fails = [&](const Sequence& candidate) { return shows(candidate).value_or(false); };
     const Sequence smallest = shrunk(sequence, given_.vocabulary, fails);
+    left = given_.most_shrinking_commands;
+    const std::vector<std::string> decisive = contrasts(smallest, given_.vocabulary, shows);
     judge::CaseResult last = run(smallest);
     // What does not repeat itself is reported as it came first.
-    if (last.verdict == Verdict::fail && last.reason == reason) report(smallest, std::move(last));
+    if (last.verdict != Verdict::fail || last.reason != reason) return;
+    report(smallest, std::move(last));
+    for (judge::Finding& finding : worst_.findings) finding.decisive = decisive;
   }
 
   void doubt_silence() {
@@ -137,12 +154,20 @@ class DerivedResult {
     worst_.findings = std::move(silent.findings);
   }
 
+  template <typename Count>
+  std::size_t sum_of(Count count) const {
+    std::size_t sum = 0;
+    for (const DerivedPart& part : given_.parts) sum += count(part.derived);
+    return sum;
+  }
+
   void measure(std::string name, std::size_t count) {
     const auto value = static_cast<double>(count);
     worst_.measurements.push_back({std::move(name), "", value, value, value});
   }
 
   const DerivedRun& given_;
+  const DerivedPart* part_;  // that is run
   judge::CaseResult worst_;
   std::size_t run_ = 0;
   std::size_t not_applicable_ = 0;
@@ -183,8 +208,8 @@ std::optional<DerivedKind> derived_kind(const TestCase& test_case) {
 
 judge::CaseResult run_derived_case(const DerivedRun& given) {
   DerivedResult all(given);
-  for (const Sequence& sequence : given.derived.sequences)
-    if (!all.add(sequence)) break;
+  for (const DerivedPart& part : given.parts)
+    if (!all.add(part)) break;
   return all.take();
 }
 

@@ -25,21 +25,27 @@ std::vector<TestCase> derived_cases(const SequenceRole& role);
 // Nothing: a case of its own.
 std::optional<DerivedKind> derived_kind(const TestCase& test_case);
 
-// Commands that are run to find the smallest sequence that fails as the first one does.
+// Commands that are run to find the smallest sequence that fails as the first one does, and as many to find
+// what decides that.
 inline constexpr std::size_t kShrinkingCommands = 2'000;
 
-// One run of a case; all must outlive it.
+// Sequences of a case, and how each is run on a bench of its own.
+struct DerivedPart {
+  DerivedSequences derived;
+  std::function<judge::CaseResult(const Sequence&)> run;
+};
+
+// One run of a case; what it refers to must outlive it.
 struct DerivedRun {
   const TestCase& test_case;
-  const DerivedSequences& derived;
   const SequenceVocabulary& vocabulary;
-  std::function<judge::CaseResult(const Sequence&)> run;  // on a bench of its own
+  std::vector<DerivedPart> parts;  // at least one
   std::size_t most_shrinking_commands = kShrinkingCommands;
 };
 
 // Runs the sequences up to the first that fails, and makes that one smaller: what is reported is the
-// smallest, and it is the last that is run. Where no sequence can be done the case does not apply; where the
-// implementation drives nothing in any it is inconclusive.
+// smallest, with what decides that it fails, and it is the last that is run. Where no sequence can be done
+// the case does not apply; where the implementation drives nothing in any it is inconclusive.
 judge::CaseResult run_derived_case(const DerivedRun& given);
 
 }  // namespace fieldproof::conformance

@@ -61,6 +61,9 @@ inline constexpr std::size_t kMostRepetitions = 1'000;
 DerivedSequences taken_of(std::vector<std::function<Sequence()>> makers, std::size_t most,
                           kernel::Random random);
 
+// So many of them, at equal distances from one that is drawn.
+DerivedSequences evenly_taken(const std::vector<Sequence>& all, std::size_t most, kernel::Random random);
+
 // All sequences about one thing when `most` is enough for them, else as many of them, drawn; what is left of
 // `most`, of settings of two fifths of it, is about two things: each two values of two numbers of a word
 // together, then what is drawn. The same stream gives the same sequences.

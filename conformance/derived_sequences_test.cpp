@@ -219,10 +219,24 @@ class DerivedVerdict : public testing::Test {
     return result;
   }
 
+  // Where a command says such a number.
+  auto fails_when(bool (*is_wrong)(std::int64_t)) const {
+    return [this, is_wrong](const Sequence& sequence) {
+      const bool fails = std::ranges::any_of(sequence.commands, [&](const SequenceCommand& command) {
+        return command.word == 0 && is_wrong(command.numbers[0]);
+      });
+      return fails ? one(judge::Verdict::fail, "valves_wrong") : one(judge::Verdict::pass);
+    };
+  }
+
   judge::CaseResult run(std::vector<judge::CaseResult> answers) {
     std::size_t next = 0;
-    return run_derived_case({case_, derived_, vocabulary_,
-                             [&](const Sequence&) { return answers[std::min(next++, answers.size() - 1)]; }});
+    return run([&](const Sequence&) { return answers[std::min(next++, answers.size() - 1)]; });
+  }
+
+  judge::CaseResult run(std::function<judge::CaseResult(const Sequence&)> runs) {
+    return run_derived_case(
+        {.test_case = case_, .vocabulary = vocabulary_, .parts = {{derived_, std::move(runs)}}});
   }
 
   SequenceVocabulary vocabulary_ = two_words();
@@ -239,23 +253,39 @@ TEST_F(DerivedVerdict, IsThatOfTheFirstThatFails) {
 }
 
 TEST_F(DerivedVerdict, ShowsTheSmallestSequenceThatFailsForThatReason) {
-  const auto fails_on_a_number_above_63 = [&](const Sequence& sequence) {
-    const bool fails = std::ranges::any_of(sequence.commands, [](const SequenceCommand& command) {
-      return command.word == 0 && command.numbers[0] > 63;
-    });
-    return fails ? one(judge::Verdict::fail, "valves_wrong") : one(judge::Verdict::pass);
-  };
-  const judge::CaseResult result =
-      run_derived_case({case_, derived_, vocabulary_, fails_on_a_number_above_63});
+  const judge::CaseResult result = run(fails_when([](std::int64_t value) { return value > 63; }));
   EXPECT_THAT(result.findings.at(0).step, EndsWith(": say value 90"));
+}
+
+TEST_F(DerivedVerdict, SaysWhatDecidesAndWhatWasTriedInstead) {
+  derived_ = all_of(DerivedKind::values, vocabulary_);
+  const judge::CaseResult result = run(fails_when([](std::int64_t value) { return value < 64; }));
+  EXPECT_THAT(
+      result.findings.at(0).decisive,
+      ElementsAre("value 63 in command 1, say: with 64 it passes, with 62 it fails, too, with 90 it passes"));
+}
+
+TEST_F(DerivedVerdict, OfAVerdictThatIsNotExplainedNothingMoreIsRun) {
+  std::size_t runs = 0;
+  const judge::CaseResult result =
+      run_derived_case({.test_case = case_,
+                        .vocabulary = vocabulary_,
+                        .parts = {{derived_,
+                                   [&](const Sequence&) {
+                                     ++runs;
+                                     return one(judge::Verdict::fail, "valves_wrong");
+                                   }}},
+                        .most_shrinking_commands = 0});
+  EXPECT_EQ(runs, 1U);
+  EXPECT_EQ(result.reason, "valves_wrong");
 }
 
 TEST_F(DerivedVerdict, OfOneThatHangsItDoesNotAskAgain) {
   std::size_t runs = 0;
-  run_derived_case({case_, derived_, vocabulary_, [&](const Sequence&) {
-                      ++runs;
-                      return one(judge::Verdict::fail, "implementation_hangs");
-                    }});
+  run([&](const Sequence&) {
+    ++runs;
+    return one(judge::Verdict::fail, "implementation_hangs");
+  });
   EXPECT_EQ(runs, 1U);
 }
 

@@ -27,7 +27,7 @@ std::string first_finding(const Suite& suite, const std::string& id, const std::
     const judge::CaseResult result = run_case({&suite, &one}, setup).outcome.result;
     if (result.findings.empty()) return "no finding";
     const judge::Finding& finding = result.findings.front();
-    return fmt::format("{}\n{}\n{}\n{}", fmt::join(finding.expected, "\n"), finding.actual,
+    return fmt::format("{}\n{}\n{}\n{}\n{}", fmt::join(finding.expected, "\n"), finding.actual, finding.step,
                        finding.first_difference, fmt::join(finding.decode, "\n"));
   }
   return "no such case";

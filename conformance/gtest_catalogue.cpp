@@ -59,6 +59,7 @@ std::string told(const judge::Finding& finding) {
   line("actual", finding.actual);
   line("in step", finding.step);
   line("differs at", finding.first_difference);
+  for (const std::string& decides : finding.decisive) line("decisive", decides);
   for (const std::string& decoded : finding.decode) text += fmt::format("    {}\n", decoded);
   return text;
 }

@@ -85,6 +85,7 @@ Cell run_cell(const Suite& suite, const TestCase& test_case, const Mutant* mutan
   Setup setup;
   setup.seed = seed;
   setup.volume = Volume::quick;
+  setup.explains = false;
   const std::string uri = mutant == nullptr ? "ref" : "mutant:" + mutant->name;
   setup.implementations.push_back({.role = test_case.role(), .position = 0, .uri = uri});
   const CaseRun done = run_case({&suite, &test_case}, setup);

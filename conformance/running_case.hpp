@@ -41,6 +41,8 @@ class RunningCase {
   std::optional<judge::Pics> pics() const;
   // What happens on a real line never happens again: it is always recorded.
   bool is_on_real_line() const { return on_real_line_.has_value(); }
+  // Whether sequences that fail are run again, to find the smallest and what decides.
+  bool explains() const { return setup_.explains && !is_on_real_line(); }
   bool is_recorded() const { return setup_.record || is_on_real_line(); }
   bool is_played_back() const { return devices_.is_played_back(); }
   fault::Plan plan() const { return declared_plan(setup_, given_, telegrams_); }

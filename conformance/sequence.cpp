@@ -23,18 +23,6 @@ constexpr std::uint32_t kMostValue = 100'000;
 
 constexpr std::array<std::string_view, 3> kFaultNames{"flip", "drop", "gap"};
 
-std::string fault_text(const SequenceFault& fault, std::string_view unit) {
-  switch (fault.kind) {
-    case SequenceFaultKind::flip:
-      return fmt::format("level {} of {} {} flipped", fault.value, unit, fault.unit);
-    case SequenceFaultKind::drop:
-      return fmt::format("{} {} dropped", unit, fault.unit);
-    case SequenceFaultKind::gap:
-      break;
-  }
-  return fmt::format("{} bits of silence after {} {}", fault.value, unit, fault.unit);
-}
-
 ordered_json fault_json(const SequenceFault& fault) {
   ordered_json json;
   json["fault"] = kFaultNames.at(static_cast<std::size_t>(fault.kind));
@@ -188,6 +176,18 @@ std::size_t flips_in(const Sequence& sequence) {
         std::ranges::count(command.faults, SequenceFaultKind::flip, &SequenceFault::kind));
   }
   return count;
+}
+
+std::string fault_text(const SequenceFault& fault, std::string_view unit) {
+  switch (fault.kind) {
+    case SequenceFaultKind::flip:
+      return fmt::format("level {} of {} {} flipped", fault.value, unit, fault.unit);
+    case SequenceFaultKind::drop:
+      return fmt::format("{} {} dropped", unit, fault.unit);
+    case SequenceFaultKind::gap:
+      break;
+  }
+  return fmt::format("{} bits of silence after {} {}", fault.value, unit, fault.unit);
 }
 
 std::string settings_text(const field::Settings& settings, const SequenceVocabulary& vocabulary) {

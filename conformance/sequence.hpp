@@ -150,6 +150,8 @@ std::size_t units_of(const SequenceWord& word, const SequenceCommand& command);
 std::size_t flips_in(const Sequence& sequence);
 std::size_t faults_in(const Sequence& sequence);
 
+// "level 3 of character 2 flipped", with the name of a unit.
+std::string fault_text(const SequenceFault& fault, std::string_view unit);
 // "loss_limit 0 s, boards 1".
 std::string settings_text(const field::Settings& settings, const SequenceVocabulary& vocabulary);
 // One line for each command: "write data0 165 data1 60 silence 45; bit 3 of character 2 flipped".

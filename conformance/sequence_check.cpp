@@ -1,10 +1,13 @@
 #include "conformance/sequence_check.hpp"
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "conformance/runner.hpp"
+#include "conformance/sequence_contrast.hpp"
 #include "conformance/sequence_draw.hpp"
 #include "conformance/sequence_shrink.hpp"
 
@@ -43,12 +46,22 @@ class SameFailure {
   SequenceFound found(Sequence drawn, judge::CaseResult first, Sequence smallest) const {
     Setup recorded = setup_;
     recorded.record = true;
+    const std::vector<std::string> decisive =
+        contrasts(smallest, role_.vocabulary, [&](const Sequence& one) { return shows(one); });
     Outcome outcome = run_sequence(suite_, role_, smallest, recorded);
+    for (judge::Finding& finding : outcome.result.findings) finding.decisive = decisive;
     const bool is_confirmed = is_in(outcome);
     return {std::move(drawn), std::move(smallest), std::move(outcome), std::move(first), runs_, is_confirmed};
   }
 
  private:
+  std::optional<bool> shows(const Sequence& candidate) const {
+    if (stop_.stop_requested()) return std::nullopt;
+    const Outcome outcome = run_sequence(suite_, role_, candidate, setup_);
+    if (outcome.result.verdict == judge::Verdict::pass) return false;
+    if (!is_in(outcome)) return std::nullopt;
+    return true;
+  }
   bool is_in(const Outcome& outcome) const { return has_failed(outcome) && outcome.result.reason == reason_; }
 
   const Suite& suite_;

@@ -133,19 +133,18 @@ judge::CaseResult Suite::run_derived(const RoleRow& row, DerivedKind kind, Runni
           : run.setup().sequences.value_or(derived_count(kind, run.setup().volume, sequences.role.cost));
   const bool has_time = run.setup().volume == Volume::full && !run.is_on_real_line();
   const kernel::Random random = kernel::Random(run.setup().seed).split("derived");
-  const DerivedSequences derived =
+  DerivedSequences derived =
       kind == DerivedKind::walks
           ? walk_sequences(*this, sequences.role, has_time ? Volume::full : Volume::quick, most, random)
           : derived_sequences(kind, vocabulary, most, random, has_time ? kMostRepetitions : kManyRepetitions);
+  const auto run_one = [&](const Sequence& sequence) {
+    run.use_settings(sequence.settings);
+    return sequences.run(sequence, run);
+  };
   return run_derived_case({.test_case = run.test_case(),
-                           .derived = derived,
                            .vocabulary = vocabulary,
-                           .run =
-                               [&](const Sequence& sequence) {
-                                 run.use_settings(sequence.settings);
-                                 return sequences.run(sequence, run);
-                               },
-                           .most_shrinking_commands = run.is_on_real_line() ? 0 : kShrinkingCommands});
+                           .parts = {{std::move(derived), run_one}},
+                           .most_shrinking_commands = run.explains() ? kShrinkingCommands : 0});
 }
 
 void Suite::check(const TestCase& test_case, const Setup& setup) const {

@@ -38,6 +38,7 @@ inline judge::CaseResult sample_failure() {
   finding.time = kernel::kStart + 814'800 * kernel::kNanosecond;
   finding.step = "3 of 4: expected: the outputs stay";
   finding.first_difference = "output octet 0, bit 5";
+  finding.decisive = {"command 2, data: without it it passes", "words \x1b[2J<b>2</b>: with 1 it passes"};
   finding.decode = {"levels    0 11111111 1", "telegram  data 0xA5",
                     "cycle     loopback word, 2 octets,\ncheck wrong"};
   result.findings = {finding};

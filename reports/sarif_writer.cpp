@@ -136,6 +136,7 @@ std::string finding_line(const judge::Finding& finding) {
   if (!finding.expected.empty()) text += fmt::format("\nexpected: {}", fmt::join(finding.expected, " or "));
   text += "\nactual: " + finding.actual;
   if (!finding.first_difference.empty()) text += "\nfirst difference: " + finding.first_difference;
+  for (const std::string& line : finding.decisive) text += "\ndecisive: " + line;
   return text;
 }
 

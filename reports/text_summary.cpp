@@ -72,6 +72,7 @@ std::string one_finding(const Finding& finding, const TextOptions& options) {
   out += field("time", kernel::describe(finding.time));
   if (!finding.step.empty()) out += field("in step", finding.step);
   if (!finding.first_difference.empty()) out += field("first difference", finding.first_difference);
+  out += list_fields("decisive", "", finding.decisive);
   return out + list_fields("decode", "", finding.decode);
 }
 

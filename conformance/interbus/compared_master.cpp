@@ -39,22 +39,22 @@ Sequence between(const MasterCommands& middle) {
 
 }  // namespace
 
-std::function<void(MasterBench&, CaseJudge&)> each_beside(MasterFamily family, std::size_t quick,
-                                                          ChangeRules change_rules) {
-  return [=](MasterBench& bench, CaseJudge& judge) {
-    const std::vector<MasterCommands> all = family();
-    const std::size_t count = bench.volume(std::min(quick, all.size()), all.size());
-    const std::size_t first =
-        count == all.size() ? 0 : static_cast<std::size_t>(bench.random().below(all.size()));
-    for (std::size_t n = 0; n < count; ++n)
-      run_master_sequence(between(all[(first + n * all.size() / count) % all.size()]), bench, judge,
-                          change_rules);
+MasterFamilies each_beside(MasterFamily family, std::size_t quick, ChangeRules change_rules) {
+  const auto all = [family](kernel::Random) {
+    std::vector<Sequence> sequences;
+    for (const MasterCommands& middle : family()) sequences.push_back(between(middle));
+    return sequences;
   };
+  const auto run = [change_rules](const Sequence& sequence, MasterBench& bench, CaseJudge& judge) {
+    run_master_sequence(sequence, bench, judge, change_rules);
+  };
+  return {{.all = all, .quick = quick, .full = kAllOfFamily, .run = run}};
 }
 
 MasterCase compared(std::string_view id, std::string stimulus, std::vector<MustCatch> catches,
-                    std::function<void(MasterBench&, CaseJudge&)> procedure) {
-  MasterCase made{master_sequence_role().test_case, std::move(procedure)};
+                    MasterFamilies families) {
+  MasterCase made{master_sequence_role().test_case, nullptr};
+  made.families = std::move(families);
   made.test_case.id = fmt::format("interbus/master/compared/{}", id);
   made.test_case.purpose = "compared";
   made.test_case.stimulus = std::move(stimulus);

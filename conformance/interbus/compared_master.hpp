@@ -25,10 +25,10 @@ SequenceCommand cycles(std::int64_t count);
 // Power on this ring, which is expected; its first and last words are copied.
 SequenceCommand ring(std::int64_t number);
 
+using MasterFamilies = std::vector<SequenceFamily<MasterBench>>;
 // All of a family, each between what shows its effect; in a quick run so many of it, others with each seed.
-std::function<void(MasterBench&, CaseJudge&)> each_beside(MasterFamily family, std::size_t quick,
-                                                          ChangeRules change_rules = nullptr);
+MasterFamilies each_beside(MasterFamily family, std::size_t quick, ChangeRules change_rules = nullptr);
 MasterCase compared(std::string_view id, std::string stimulus, std::vector<MustCatch> catches,
-                    std::function<void(MasterBench&, CaseJudge&)> procedure);
+                    MasterFamilies families);
 
 }  // namespace fieldproof::conformance::compared_master

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "conformance/interbus/master_cases.hpp"
+#include "conformance/interbus/master_sequence.hpp"
+#include "conformance/sequence_families.hpp"
 #include "protocols/interbus/master.hpp"
 
 namespace fieldproof::conformance {
@@ -46,7 +48,9 @@ TEST(MasterAhead, WhatIsDrivenWithinTheOrderToStartIsNoSilence) {
                               return std::make_unique<SaysAhead>(configuration);
                             },
                         .volume = Volume::quick};
-  const judge::CaseResult result = run_on_bench(*found, setting);
+  const judge::CaseResult result =
+      run_families(*found, {.vocabulary = master_sequence_role().vocabulary, .volume = Volume::quick},
+                   [&](const MasterCase& one) { return run_on_bench(one, setting); });
   EXPECT_EQ(result.verdict, judge::Verdict::pass) << result.reason;
 }
 

@@ -203,19 +203,23 @@ std::vector<MasterCommands> orders_in_each_state() {
   return all;
 }
 
-void drawn_for_a_master(MasterBench& bench, CaseJudge& judge) {
-  const SequenceSource source(words_of_master(), bench.random().next());
-  for (std::uint64_t n = 0; n < bench.volume(15U, 300U); ++n)
-    run_master_sequence({.commands = source.draw(40 + n).commands}, bench, judge);
+MasterFamilies drawn_for_a_master() {
+  constexpr std::uint64_t kAll = 300;
+  const auto all = [](kernel::Random random) {
+    const SequenceSource source(words_of_master(), random.next());
+    std::vector<Sequence> sequences;
+    for (std::uint64_t n = 0; n < kAll; ++n) sequences.push_back({.commands = source.draw(40 + n).commands});
+    return sequences;
+  };
+  const auto run = [](const Sequence& sequence, MasterBench& bench, CaseJudge& judge) {
+    run_master_sequence(sequence, bench, judge);
+  };
+  return {{.all = all, .quick = 15, .full = kAll, .run = run}};
 }
 
-using MasterProcedure = std::function<void(MasterBench&, CaseJudge&)>;
-
-MasterProcedure both(MasterProcedure first, MasterProcedure second) {
-  return [first = std::move(first), second = std::move(second)](MasterBench& bench, CaseJudge& judge) {
-    first(bench, judge);
-    second(bench, judge);
-  };
+MasterFamilies both(MasterFamilies all, const MasterFamilies& more) {
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
 }
 
 // ---- other settings ----
@@ -293,7 +297,7 @@ std::vector<MasterCase> master_compared_cases() {
       compared("many_cycles", "300 cycles, some of them bad, each with other inputs.",
                {{"outputs_torn", "cycle_wrong"}}, each_beside(many_cycles_of_a_master, 2)),
       compared("drawn_sequences", "Sequences of all words at random.",
-               {{"first_station_first", "cycle_wrong"}}, drawn_for_a_master),
+               {{"first_station_first", "cycle_wrong"}}, drawn_for_a_master()),
       compared("other_codings", "The same with each coding another one.",
                {{"outputs_one_cycle_late", "cycle_wrong"}, {"message_bit_kept", "report_wrong"}},
                both(each_beside(messages_of_each_station, 1, change_all_codings),

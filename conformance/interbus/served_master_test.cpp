@@ -52,6 +52,7 @@ void expect_equal(const TestCase& test_case, const Outcome& outside, const Outco
   EXPECT_EQ(outside.result.reason, inside.result.reason) << test_case.id;
   // Limits of the ring are no settings that an implementation outside is told: there it scans on.
   if (test_case.id == "interbus/master/compared/each_value_of_each_word" ||
+      test_case.id == "interbus/master/compared/drawn_sequences" ||
       test_case.id == "interbus/master/derived/each_command_in_each_state")
     return;
   EXPECT_EQ(outside.result.fingerprint, inside.result.fingerprint) << test_case.id;

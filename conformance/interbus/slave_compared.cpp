@@ -4,7 +4,6 @@
 #include <initializer_list>
 #include <utility>
 
-#include "conformance/commands_text.hpp"
 #include "conformance/interbus/other_codings.hpp"
 #include "conformance/interbus/slave_acts.hpp"
 #include "conformance/interbus/slave_cases.hpp"
@@ -26,61 +25,45 @@ using slave_families::vocabulary;
 
 // ---- a case ----
 
-void begin_anew(SlaveTwins& twins) {
-  twins.each([&](SlaveBench& one) {
-    one.set_power(false);
-    one.silence(4 * twins.bench().rules().silence_limit);
-    one.set_bridge(false, twins.bench().pics().supports("remote_interface"));
-    one.set_bridge(true, true);
-    one.terminals().set_peripheral_fault({});
-    one.terminals().set_reconfiguration({});
-    one.set_power(true);
-    one.bring_up();
-  });
-}
-
-// Up to where nothing is certain any more.
-void run(SlaveTwins& twins, CaseJudge& judge, const Commands& commands) {
-  begin_anew(twins);
-  SlaveActs acts(twins);
-  CommandsText done;
-  for (const SequenceCommand& one : commands) {
-    acts.act(one, judge);
-    done.add(command_lines({.commands = {one}}, vocabulary()).front());
-    if (!twins.agree(judge, done.text())) return;
-  }
-}
+using Families = std::vector<SequenceFamily<SlaveBench>>;
 
 // One thing after a start, then what shows the state that it left.
-void run_between(SlaveTwins& twins, CaseJudge& judge, const Commands& middle) {
-  Commands commands{command(SlaveWord::inputs), id(0), command(SlaveWord::data)};
-  commands.insert(commands.end(), middle.begin(), middle.end());
+Sequence between(const Commands& middle) {
+  Sequence sequence{.commands = {command(SlaveWord::inputs), id(0), command(SlaveWord::data)}};
+  sequence.commands.insert(sequence.commands.end(), middle.begin(), middle.end());
   for (const SequenceCommand& one :
        {returns(true), command(SlaveWord::data, {{0, 0xF00F}, {1, 0x00FF}}), returns(false), returns(true),
         id(0), command(SlaveWord::data, {{0, 0x8001}, {1, 0x7FFE}}), id(0), command(SlaveWord::data)})
-    commands.push_back(one);
-  run(twins, judge, commands);
+    sequence.commands.push_back(one);
+  return sequence;
 }
 
 struct Share {
   std::vector<Commands> (*family)();
   std::size_t quick;
-  std::size_t full = ~std::size_t{0};
+  std::size_t full = kAllOfFamily;
 };
 
-// So many of each family, others with each seed.
-std::function<void(SlaveBench&, CaseJudge&)> each_of(std::vector<Share> shares) {
-  return [shares = std::move(shares)](SlaveBench& bench, CaseJudge& judge) {
-    SlaveTwins twins(bench);
-    for (const auto& [family, quick, full] : shares) {
-      const std::vector<Commands> all = family();
-      const std::size_t count = std::min(bench.volume(quick, full), all.size());
-      const std::size_t first =
-          count == all.size() ? 0 : static_cast<std::size_t>(bench.random().below(all.size()));
-      for (std::size_t n = 0; n < count; ++n)
-        run_between(twins, judge, all[(first + n * all.size() / count) % all.size()]);
-    }
-  };
+Families each_of(const std::vector<Share>& shares) {
+  Families families;
+  for (const auto& [family, quick, full] : shares) {
+    const auto all = [family = family](kernel::Random) {
+      std::vector<Sequence> sequences;
+      for (const Commands& middle : family()) sequences.push_back(between(middle));
+      return sequences;
+    };
+    families.push_back({all, quick, full, run_slave_sequence});
+  }
+  return families;
+}
+
+void begin_anew(SlaveTwins& twins) {
+  twins.each([&](SlaveBench& one) {
+    one.set_power(false);
+    one.silence(4 * twins.bench().rules().silence_limit);
+    one.set_power(true);
+    one.bring_up();
+  });
 }
 
 // With outputs that are 0, because nobody can say when the slave resets itself: by then it may have.
@@ -89,7 +72,13 @@ void silence_in_a_reset(SlaveBench& bench, CaseJudge& judge) {
   const interbus::Rules& rules = bench.rules();
   const std::array<std::uint16_t, 3> orders{0, rules.control_remote_off, rules.control_local_off};
   for (const std::uint16_t control : orders) {
-    run(twins, judge, {command(SlaveWord::inputs), id(0), id(4), command(SlaveWord::silence, {{0, 5}})});
+    begin_anew(twins);
+    SlaveActs acts(twins);
+    for (const SequenceCommand& one :
+         {command(SlaveWord::inputs), id(0), id(4), command(SlaveWord::silence, {{0, 5}})}) {
+      acts.act(one, judge);
+      twins.agree(judge, command_lines({.commands = {one}}, vocabulary()).front());
+    }
     // The stations in front have reset themselves, too.
     twins.each([&](SlaveBench& one) {
       line::Waveform wave{one.now(), one.rules().bit_rate, one.direct_id_cycle(control)};
@@ -105,17 +94,33 @@ void silence_in_a_reset(SlaveBench& bench, CaseJudge& judge) {
   }
 }
 
-void drawn(SlaveBench& bench, CaseJudge& judge) {
-  SlaveTwins twins(bench);
-  const SequenceSource source(vocabulary(), bench.random().next());
-  for (std::uint64_t n = 0; n < bench.volume(15U, 300U); ++n) run(twins, judge, source.draw(40 + n).commands);
+Families drawn() {
+  constexpr std::uint64_t kAll = 300;
+  const auto all = [](kernel::Random random) {
+    const SequenceSource source(vocabulary(), random.next());
+    std::vector<Sequence> sequences;
+    for (std::uint64_t n = 0; n < kAll; ++n) sequences.push_back({.commands = source.draw(40 + n).commands});
+    return sequences;
+  };
+  return {{.all = all, .quick = 15, .full = kAll, .run = run_slave_sequence}};
 }
 
 // Everything with other settings, some of it.
-std::function<void(SlaveBench&, CaseJudge&)> some_of_all() {
+Families some_of_all() {
   return each_of({{slave_families::each_value, 20, 200},
                   {slave_families::one_after_another, 6, 200},
                   {slave_families::within_a_reset, 9}});
+}
+
+// For a slave whose levels are seen.
+Families on_its_line(Families families) {
+  for (SequenceFamily<SlaveBench>& family : families) {
+    family.run = [](const Sequence& sequence, SlaveBench& bench, CaseJudge& judge) {
+      bench.require_line_interface();
+      run_slave_sequence(sequence, bench, judge);
+    };
+  }
+  return families;
 }
 
 // ---- other settings ----
@@ -185,10 +190,10 @@ void change_to_many_words(interbus::Rules& rules) {
 }
 
 SlaveCase compared(std::string_view id, std::string stimulus, std::vector<MustCatch> catches,
-                   std::function<void(SlaveBench&, CaseJudge&)> procedure,
-                   void (*change_rules)(interbus::Rules&) = nullptr,
+                   Families families, void (*change_rules)(interbus::Rules&) = nullptr,
                    std::optional<std::uint16_t> id_code = std::nullopt) {
-  SlaveCase made{slave_sequence_role().test_case, std::move(procedure), slave_sequence_needs()};
+  SlaveCase made{slave_sequence_role().test_case, nullptr, slave_sequence_needs()};
+  made.families = std::move(families);
   made.test_case.id = fmt::format("interbus/slave/compared/{}", id);
   made.test_case.purpose = "compared";
   made.test_case.stimulus = std::move(stimulus);
@@ -200,6 +205,12 @@ SlaveCase compared(std::string_view id, std::string stimulus, std::vector<MustCa
   if (change_rules != nullptr) only_for.push_back(for_other_settings());
   made.test_case.not_applicable = for_all(std::move(only_for));
   return made;
+}
+
+SlaveCase done_by(void (*procedure)(SlaveBench&, CaseJudge&), SlaveCase one) {
+  one.families.reset();
+  one.procedure = procedure;
+  return one;
 }
 
 std::vector<SlaveCase> cases_of_other_codings() {
@@ -241,9 +252,11 @@ std::vector<SlaveCase> compared_as_usual() {
                {{"outgoing_reset_clears_outputs", "outputs_wrong"},
                 {"keeps_all_without_supply", "telegram_added"}},
                each_of({{slave_families::within_a_reset, 63}})),
-      compared("silence_within_a_reset_of_the_outgoing_bus",
-               "Silence that resets the slave while it keeps the outgoing bus in reset, then an ID cycle.",
-               {{"reset_ends_outgoing_reset", "octet_wrong"}}, silence_in_a_reset),
+      done_by(silence_in_a_reset,
+              compared(
+                  "silence_within_a_reset_of_the_outgoing_bus",
+                  "Silence that resets the slave while it keeps the outgoing bus in reset, then an ID cycle.",
+                  {{"reset_ends_outgoing_reset", "octet_wrong"}}, {})),
       compared("each_cut_of_a_cycle", "A data cycle in two transmissions without a gap," + after,
                {{"loses_the_rest_of_a_cut_telegram", "outputs_wrong"}},
                each_of({{slave_families::each_cut, 24}})),
@@ -268,10 +281,7 @@ std::vector<SlaveCase> compared_as_usual() {
                "places," +
                    after,
                {{"samples_late_on_the_way_back", "octet_wrong"}},
-               [](SlaveBench& bench, CaseJudge& judge) {
-                 bench.require_line_interface();
-                 each_of({{slave_families::returned_edges_at_both_limits, 8}})(bench, judge);
-               }),
+               on_its_line(each_of({{slave_families::returned_edges_at_both_limits, 8}}))),
       compared("inputs_of_the_start_level", "A clock ticks at all inputs while data cycles come," + after,
                {{"samples_a_telegram_late", "inputs_of_another_instant"}},
                each_of({{slave_families::clock_at_the_inputs, 1}})),
@@ -288,10 +298,7 @@ std::vector<SlaveCase> compared_as_usual() {
                "A data cycle at 1 % beside the bit rate whose edges lie 15 % of a bit beside their places," +
                    after,
                {{"samples_late", "outputs_wrong"}},
-               [](SlaveBench& bench, CaseJudge& judge) {
-                 bench.require_line_interface();
-                 each_of({{slave_families::edges_at_both_limits, 8}})(bench, judge);
-               }),
+               on_its_line(each_of({{slave_families::edges_at_both_limits, 8}}))),
       compared(
           "rare_orders",
           "Orders, messages and interfaces with an error, a mark or a silence in the very cycle," + after,
@@ -304,7 +311,7 @@ std::vector<SlaveCase> compared_as_usual() {
       compared("many_cycles", "270 data cycles and 270 ID cycles," + after,
                {{"loses_every_200th_cycle", "outputs_wrong"}}, each_of({{slave_families::many_cycles, 2}})),
       compared("drawn_sequences", "Sequences of all words at random.",
-               {{"delays_four_bits", "passed_at_another_time"}}, drawn)};
+               {{"delays_four_bits", "passed_at_another_time"}}, drawn())};
 }
 
 std::vector<SlaveCase> compared_elsewhere() {
@@ -325,7 +332,9 @@ std::vector<SlaveCase> compared_elsewhere() {
                change_to_odd_rate),
       compared("times_of_minutes", "Silences and resets with a silence limit of 700 s.",
                {{"counts_microseconds_in_32_bits", "outputs_wrong"}},
-               each_of({{slave_families::around_a_reset, 16}, {slave_families::at_the_end_of_a_reset, 2}}),
+               each_of({{slave_families::silences_in_a_row, 4},
+                        {slave_families::around_a_reset, 16},
+                        {slave_families::at_the_end_of_a_reset, 2}}),
                change_to_minutes),
       compared("least_times", "The same without delays and with a silence limit of 0.8 ms.",
                {{"a_delay_at_least", "passed_at_another_time"}},

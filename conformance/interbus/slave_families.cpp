@@ -165,6 +165,18 @@ std::vector<Commands> around_a_reset() {
   return all;
 }
 
+// Each ends longer after power-up than the one before.
+std::vector<Commands> silences_in_a_row() {
+  constexpr int kMost = 4;
+  std::vector<Commands> all;
+  Commands row;
+  for (int n = 0; n < kMost; ++n) {
+    row.insert(row.end(), {command(SlaveWord::silence, {{0, 3}}), id(0), command(SlaveWord::data)});
+    all.push_back(row);
+  }
+  return all;
+}
+
 // A cycle whose end does not come, with and without its check; then its check comes after all.
 std::vector<Commands> within_a_cycle() {
   std::vector<Commands> all;

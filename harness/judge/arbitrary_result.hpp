@@ -54,7 +54,7 @@ inline rc::Gen<Finding> arbitrary_finding() {
       rc::gen::set(&Finding::actual, kernel::arbitrary_text()), rc::gen::set(&Finding::time, time),
       rc::gen::set(&Finding::step, kernel::arbitrary_text()),
       rc::gen::set(&Finding::first_difference, kernel::arbitrary_text()),
-      rc::gen::set(&Finding::decode, texts));
+      rc::gen::set(&Finding::decisive, texts), rc::gen::set(&Finding::decode, texts));
 }
 
 inline rc::Gen<Measurement> arbitrary_measurement() {

@@ -19,9 +19,11 @@ struct Finding {
   Reference reference;
   std::vector<std::string> expected;  // every admissible observation
   std::string actual;
-  kernel::Time time{};              // simulated time of the observation
-  std::string step{};               // of the case, where it has steps: "2 of 5: the node is polled again"
-  std::string first_difference;     // field and position of the first difference, may be empty
+  kernel::Time time{};           // simulated time of the observation
+  std::string step{};            // of the case, where it has steps: "2 of 5: the node is polled again"
+  std::string first_difference;  // field and position of the first difference, may be empty
+  // What decides that it shows, each a line with what was tried instead; of sequences that are compared.
+  std::vector<std::string> decisive{};
   std::vector<std::string> decode;  // layered: levels, telegrams, cycle, fields; may be empty
 };
 

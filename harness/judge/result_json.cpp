@@ -39,6 +39,7 @@ Json finding_to_json(const Finding& finding) {
           {"time_ps", fmt::format("{}", finding.time.time_since_epoch().count())},
           {"step", kernel::as_utf8(finding.step)},
           {"first_difference", kernel::as_utf8(finding.first_difference)},
+          {"decisive", strings_to_json(finding.decisive)},
           {"decode", strings_to_json(finding.decode)}};
 }
 
@@ -121,6 +122,7 @@ Finding finding_from(const Value& value) {
     finding.time = kernel::Time{kernel::Duration{integer_from<std::int64_t>(object.required("time_ps"), 10)}};
     finding.step = text_in(object, "step");
     finding.first_difference = text_in(object, "first_difference");
+    finding.decisive = texts_from(object.required("decisive"));
     finding.decode = texts_from(object.required("decode"));
     return finding;
   });

@@ -61,7 +61,8 @@ function findingPart(finding, result, at, count) {
       definitions([["Source", isSameSource(finding.reference, result.reference) ? "" : sourceText(finding.reference)], ["Time", timeText(finding.time_ps)],
         ["Step", finding.step],
         ["First difference", finding.first_difference]]),
-      facing(finding.expected, finding.actual), decode);
+      facing(finding.expected, finding.actual),
+      finding.decisive.length ? element("div", {class: "decisive"}, element("h5", {}, "Decisive"), lines(finding.decisive, "")) : null, decode);
 }
 
 // Where there is no limit, low and high are the value itself.

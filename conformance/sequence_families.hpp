@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "conformance/bench_case.hpp"
+#include "conformance/derived_cases.hpp"
+
+// Cases of families of sequences: each sequence on a bench of its own, as those that are derived.
+namespace fieldproof::conformance {
+
+struct FamiliesRun {
+  const SequenceVocabulary& vocabulary;
+  std::uint64_t seed = 1;
+  Volume volume = Volume::full;
+  std::size_t most_shrinking_commands = 0;
+};
+
+// `run_case` runs one that has a procedure.
+template <typename Case, typename RunCase>
+judge::CaseResult run_families(const Case& one, const FamiliesRun& given, const RunCase& run_case) {
+  const kernel::Random random = kernel::Random(given.seed).split("families");
+  DerivedRun all{.test_case = one.test_case,
+                 .vocabulary = given.vocabulary,
+                 .parts = {},
+                 .most_shrinking_commands = given.most_shrinking_commands};
+  for (const auto& family : *one.families) {
+    const std::size_t most = given.volume == Volume::quick ? family.quick : family.full;
+    const auto run_one = [&one, &family, &run_case](const Sequence& sequence) {
+      Case asked = one;
+      asked.procedure = [&](auto& bench, CaseJudge& judge) { family.run(sequence, bench, judge); };
+      return run_case(asked);
+    };
+    all.parts.push_back({evenly_taken(family.all(random), most, random), run_one});
+  }
+  return run_derived_case(all);
+}
+
+}  // namespace fieldproof::conformance
