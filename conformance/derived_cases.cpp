@@ -22,6 +22,7 @@ constexpr std::string_view kFolderOfCheck = "/check/";
 constexpr std::string_view kOfImplementation = "implementation_";  // reasons begin so: it crashed, it hangs
 constexpr std::size_t kFewerIfSanitized = 16;
 constexpr std::size_t kFewestSequences = 3;
+constexpr std::size_t kLeastShrinkingRuns = 60;  // of a sequence so long that its commands allow few
 constexpr std::uint64_t kFingerprintFactor = 0x100'0000'01B3;  // of FNV-1a
 
 const DerivedRow& row_of(DerivedKind kind) {
@@ -121,21 +122,23 @@ class DerivedResult {
 
   // One that crashes or hangs is not made to do it again and again.
   void make_smaller(const Sequence& sequence) {
-    std::size_t left = given_.most_shrinking_commands;
-    if (left == 0 || worst_.verdict != Verdict::fail || worst_.reason.starts_with(kOfImplementation)) return;
+    if (given_.most_shrinking_commands == 0 || worst_.verdict != Verdict::fail ||
+        worst_.reason.starts_with(kOfImplementation))
+      return;
     const std::string reason = worst_.reason;
-    const SequenceShows shows = [&](const Sequence& candidate) -> std::optional<bool> {
+    const std::size_t most =
+        std::max(given_.most_shrinking_commands, kLeastShrinkingRuns * (sequence.commands.size() + 1));
+    std::size_t left = most;
+    const SequenceShows shows = [&](const Sequence& candidate) {
       const std::size_t cost = candidate.commands.size() + 1;
-      if (cost > left) return std::nullopt;
+      if (cost > left) return Shown::not_tried;
       left -= cost;
-      const judge::CaseResult one = run(candidate);
-      if (one.verdict == Verdict::pass) return false;
-      if (one.verdict != Verdict::fail || one.reason != reason) return std::nullopt;
-      return true;
+      return shown_by(run(candidate), reason);
     };
-    const auto fails = [&](const Sequence& candidate) { return shows(candidate).value_or(false); };
-    const Sequence smallest = shrunk(sequence, given_.vocabulary, fails);
-    left = given_.most_shrinking_commands;
+    const Sequence smallest = shrunk(sequence, given_.vocabulary, [&](const Sequence& candidate) {
+      return shows(candidate) == Shown::alike;
+    });
+    left = most;
     const std::vector<std::string> decisive = contrasts(smallest, given_.vocabulary, shows);
     judge::CaseResult last = run(smallest);
     // What does not repeat itself is reported as it came first.

@@ -44,8 +44,8 @@ struct DerivedRun {
 };
 
 // Runs the sequences up to the first that fails, and makes that one smaller: what is reported is the
-// smallest, with what decides that it fails, and it is the last that is run. Where no sequence can be done
-// the case does not apply; where the implementation drives nothing in any it is inconclusive.
+// smallest that was found, with what decides that it fails, and it is the last that is run. Where no sequence
+// can be done the case does not apply; where the implementation drives nothing in any it is inconclusive.
 judge::CaseResult run_derived_case(const DerivedRun& given);
 
 }  // namespace fieldproof::conformance

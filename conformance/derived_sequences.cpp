@@ -483,7 +483,7 @@ DerivedSequences taken_of(std::vector<std::function<Sequence()>> makers, std::si
 
 DerivedSequences evenly_taken(const std::vector<Sequence>& all, std::size_t most, kernel::Random random) {
   const std::size_t count = std::min(most, all.size());
-  DerivedSequences derived{.sequences = {}, .singles = all.size(), .taken = count};
+  DerivedSequences derived;
   const std::size_t first = count == all.size() ? 0 : static_cast<std::size_t>(random.below(all.size()));
   for (std::size_t n = 0; n < count; ++n)
     derived.sequences.push_back(all[(first + n * all.size() / count) % all.size()]);

@@ -265,6 +265,29 @@ TEST_F(DerivedVerdict, SaysWhatDecidesAndWhatWasTriedInstead) {
       ElementsAre("value 63 in command 1, say: with 64 it passes, with 62 it fails, too, with 90 it passes"));
 }
 
+TEST_F(DerivedVerdict, EqualCommandsInARowAreOneThatDecides) {
+  const SequenceCommand say = simple_command(vocabulary_, 0);
+  derived_ = {.sequences = {{.commands = std::vector<SequenceCommand>(20, say)}}};
+  const judge::CaseResult result = run([&](const Sequence& sequence) {
+    const bool fails = std::ranges::count(sequence.commands, std::size_t{0}, &SequenceCommand::word) >= 20;
+    return fails ? one(judge::Verdict::fail, "valves_wrong") : one(judge::Verdict::pass);
+  });
+  EXPECT_THAT(result.findings.at(0).decisive, ElementsAre("command 1, say: once less it passes"));
+}
+
+TEST_F(DerivedVerdict, WhatWasNotTriedIsSaid) {
+  derived_ = {
+      .sequences = {{.commands = std::vector<SequenceCommand>(1, simple_command(vocabulary_, 0, {{0, 7}}))}}};
+  for (std::int64_t n = 0; n < 200; ++n)
+    derived_.sequences[0].commands.push_back(simple_command(vocabulary_, 0, {{0, n}}));
+  const std::size_t whole = derived_.sequences[0].commands.size();
+  const judge::CaseResult result = run([&](const Sequence& sequence) {
+    const bool fails = sequence.commands.size() == whole;
+    return fails ? one(judge::Verdict::fail, "valves_wrong") : one(judge::Verdict::pass);
+  });
+  EXPECT_THAT(result.findings.at(0).decisive, Contains("more was not tried"));
+}
+
 TEST_F(DerivedVerdict, OfAVerdictThatIsNotExplainedNothingMoreIsRun) {
   std::size_t runs = 0;
   const judge::CaseResult result =

@@ -44,6 +44,11 @@ TEST_P(SequenceRulesTest, EachDeclaredReasonHasOne) {
   const TestCase& all = tested.sequences->test_case;
   for (const DerivedCatch& derived : tested.sequences->derived_catches)
     EXPECT_NE(all.requirement_of(derived.caught.reason), all.requirement) << derived.caught.reason;
+  for (const TestCase& one : tested.suite->cases()) {
+    if (one.role() != all.role() || one.requirement != all.requirement) continue;
+    for (const MustCatch& caught : one.catches)
+      EXPECT_NE(one.requirement_of(caught.reason), one.requirement) << one.id << " " << caught.reason;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Roles, SequenceRulesTest,

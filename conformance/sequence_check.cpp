@@ -1,7 +1,6 @@
 #include "conformance/sequence_check.hpp"
 
 #include <functional>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,12 +54,9 @@ class SameFailure {
   }
 
  private:
-  std::optional<bool> shows(const Sequence& candidate) const {
-    if (stop_.stop_requested()) return std::nullopt;
-    const Outcome outcome = run_sequence(suite_, role_, candidate, setup_);
-    if (outcome.result.verdict == judge::Verdict::pass) return false;
-    if (!is_in(outcome)) return std::nullopt;
-    return true;
+  Shown shows(const Sequence& candidate) const {
+    if (stop_.stop_requested()) return Shown::not_tried;
+    return shown_by(run_sequence(suite_, role_, candidate, setup_).result, reason_);
   }
   bool is_in(const Outcome& outcome) const { return has_failed(outcome) && outcome.result.reason == reason_; }
 

@@ -5,8 +5,10 @@
 
 #include "conformance/bench_case.hpp"
 #include "conformance/derived_cases.hpp"
+#include "harness/kernel/check.hpp"
 
-// Cases of families of sequences: each sequence on a bench of its own, as those that are derived.
+// Cases of families of sequences: each sequence on a bench of its own, as those that are derived. They have
+// no settings: those of the case are the same for all.
 namespace fieldproof::conformance {
 
 struct FamiliesRun {
@@ -27,6 +29,7 @@ judge::CaseResult run_families(const Case& one, const FamiliesRun& given, const 
   for (const auto& family : *one.families) {
     const std::size_t most = given.volume == Volume::quick ? family.quick : family.full;
     const auto run_one = [&one, &family, &run_case](const Sequence& sequence) {
+      FIELDPROOF_CHECK(sequence.settings.empty(), "sequences of a family have no settings");
       Case asked = one;
       asked.procedure = [&](auto& bench, CaseJudge& judge) { family.run(sequence, bench, judge); };
       return run_case(asked);

@@ -47,9 +47,9 @@ struct Share {
 Families each_of(const std::vector<Share>& shares) {
   Families families;
   for (const auto& [family, quick, full] : shares) {
-    const auto all = [family = family](kernel::Random) {
+    const auto all = [make = family](kernel::Random) {
       std::vector<Sequence> sequences;
-      for (const Commands& middle : family()) sequences.push_back(between(middle));
+      for (const Commands& middle : make()) sequences.push_back(between(middle));
       return sequences;
     };
     families.push_back({all, quick, full, run_slave_sequence});
@@ -332,7 +332,7 @@ std::vector<SlaveCase> compared_elsewhere() {
                change_to_odd_rate),
       compared("times_of_minutes", "Silences and resets with a silence limit of 700 s.",
                {{"counts_microseconds_in_32_bits", "outputs_wrong"}},
-               each_of({{slave_families::silences_in_a_row, 4},
+               each_of({{slave_families::silence_after_a_long_life, 8},
                         {slave_families::around_a_reset, 16},
                         {slave_families::at_the_end_of_a_reset, 2}}),
                change_to_minutes),

@@ -165,14 +165,16 @@ std::vector<Commands> around_a_reset() {
   return all;
 }
 
-// Each ends longer after power-up than the one before.
-std::vector<Commands> silences_in_a_row() {
-  constexpr int kMost = 4;
+// Silence after a slave has been kept alive for so many limits of silence: times since power-up are long
+// then.
+std::vector<Commands> silence_after_a_long_life() {
+  constexpr int kMost = 8;
   std::vector<Commands> all;
-  Commands row;
+  Commands life;
   for (int n = 0; n < kMost; ++n) {
-    row.insert(row.end(), {command(SlaveWord::silence, {{0, 3}}), id(0), command(SlaveWord::data)});
-    all.push_back(row);
+    life.insert(life.end(), {command(SlaveWord::kept_alive, {{0, 2}}), id(0)});
+    all.push_back(life);
+    all.back().insert(all.back().end(), {command(SlaveWord::data), command(SlaveWord::silence)});
   }
   return all;
 }

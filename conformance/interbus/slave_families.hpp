@@ -24,7 +24,7 @@ std::vector<Commands> each_fault_of_an_id_cycle();
 std::vector<Commands> two_faults_of_a_data_cycle();
 std::vector<Commands> one_after_another();
 std::vector<Commands> around_a_reset();
-std::vector<Commands> silences_in_a_row();
+std::vector<Commands> silence_after_a_long_life();
 std::vector<Commands> within_a_cycle();
 std::vector<Commands> within_a_reset();
 std::vector<Commands> rare_orders();

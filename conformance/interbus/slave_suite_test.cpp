@@ -93,8 +93,6 @@ TEST(SlaveSuite, EachMutantIsCaughtAtAnotherPosition) {
   for (const SlaveCase& slave_case : cases_without_stress()) {
     if (has_tag(slave_case.test_case, kStressTag))
       continue;  // the program has stresses, and a test of its own
-    // When stations in front have reset themselves nothing is certain any more: there is one silence only.
-    if (slave_case.test_case.id == "interbus/slave/compared/times_of_minutes") continue;
     for (const MustCatch& declared : slave_case.test_case.catches) {
       if (few.leaves_out()) continue;
       SlaveSetting setting = setting_for({});

@@ -38,7 +38,7 @@ constexpr std::array kReasonsOfHost{
                "What nobody answers is repeated when the time-out is over: at most 105 % of it and a "
                "character and four bits after its last stop bit."},
     ReasonRule{"rest_too_short",
-               "After the last attempt of a read, also one with a wrong response, nothing is sent for the "
+               "After the last attempt of a read, with answers_writes of a write, nothing is sent for the "
                "time-out and another 5 % of it (judged from 104 %)."},
     ReasonRule{"write_distance_too_short",
                "Without answers_writes, 3.5 characters and 1 ms of rest follow each write, a refresh as "
@@ -60,7 +60,7 @@ constexpr std::array kReasonsOfHost{
                "up to the time-out is told as new; else error 2 (nothing came to the last attempt) or 3 "
                "(something else), then old data as old."},
     ReasonRule{"error_late",
-               "Error 2 of a read is reported when the time-out of its last attempt is over: at most 105 % "
+               "Error 2 is reported when the time-out of the last attempt is over: at most 105 % "
                "of it and a character and four bits after the last stop bit."},
     ReasonRule{"fifo_wrong",
                "Item 3 is the room of the FIFO of 512 octets, less all that wait, also of a part. A command "
