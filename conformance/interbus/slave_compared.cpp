@@ -244,9 +244,11 @@ std::vector<SlaveCase> compared_as_usual() {
                "All that leaves something behind, before and after silence or a loss of supply," + after,
                {{"latches_late", "outputs_at_another_time"}},
                each_of({{slave_families::around_a_reset, 120}})),
-      compared("within_a_cycle", "Something between a cycle whose end is lost and that end," + after,
-               {{"check_not_reset_between_cycles", "octet_wrong"}},
-               each_of({{slave_families::within_a_cycle, 90}})),
+      compared(
+          "within_a_cycle", "Something between a cycle whose end is lost and that end," + after,
+          {{"check_not_reset_between_cycles", "octet_wrong"},
+           {"forgets_the_missing_stop_of_a_begin", "outputs_wrong"}},
+          each_of({{slave_families::within_a_cycle, 90}, {slave_families::stop_missing_after_a_cut, 6}})),
       compared("within_a_reset_of_the_outgoing_bus",
                "ID cycles, silence and supply at both ends of the time of control_reset," + after,
                {{"outgoing_reset_clears_outputs", "outputs_wrong"},
@@ -308,8 +310,11 @@ std::vector<SlaveCase> compared_as_usual() {
                each_of({{slave_families::each_header_keeps_alive, 8}})),
       compared("many_errors", "18 and 256 cycles in a row with a wrong check," + after,
                {{"counts_errors_in_8_bits", "octet_wrong"}}, each_of({{slave_families::many_errors, 2}})),
-      compared("many_cycles", "270 data cycles and 270 ID cycles," + after,
-               {{"loses_every_200th_cycle", "outputs_wrong"}}, each_of({{slave_families::many_cycles, 2}})),
+      compared(
+          "many_cycles",
+          "270 data cycles, 270 ID cycles, and a data cycle after 253 to 257 ID cycles," + after,
+          {{"loses_every_200th_cycle", "outputs_wrong"}, {"counts_id_cycles_in_8_bits", "outputs_wrong"}},
+          each_of({{slave_families::many_cycles, 2}, {slave_families::data_after_many_id_cycles, 5}})),
       compared("drawn_sequences", "Sequences of all words at random.",
                {{"delays_four_bits", "passed_at_another_time"}}, drawn())};
 }

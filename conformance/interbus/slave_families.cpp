@@ -286,6 +286,28 @@ std::vector<Commands> at_the_end_of_a_reset() {
 }
 
 // More than a counter of eight bits counts.
+// A cycle broken off after two telegrams, then one of which a telegram has no stop level.
+std::vector<Commands> stop_missing_after_a_cut() {
+  std::vector<Commands> all;
+  for (const std::int64_t select : {1, 0}) {
+    for (const std::int64_t telegram : {0, 1, 12})
+      all.push_back({command(SlaveWord::telegrams, {{0, select}, {4, 2}}),
+                     command(SlaveWord::no_stop, {{1, telegram}})});
+  }
+  return all;
+}
+
+// The data cycle comes after 255 good ID cycles, and more, up to 257.
+std::vector<Commands> data_after_many_id_cycles() {
+  constexpr std::size_t kAnOctet = 256;
+  std::vector<Commands> all;
+  for (std::size_t count = kAnOctet - 3; count < kAnOctet + 2; ++count) {
+    all.emplace_back(count, id(0));
+    all.back().push_back(command(SlaveWord::data, {{0, 0x5A5A}}));
+  }
+  return all;
+}
+
 std::vector<Commands> many_cycles() {
   constexpr std::size_t kThreeEach = 90;
   return {Commands(kThreeEach, command(SlaveWord::data, {{6, 3}})),

@@ -32,6 +32,8 @@ std::vector<Commands> each_header_keeps_alive();
 std::vector<Commands> many_errors();
 std::vector<Commands> at_the_end_of_a_reset();
 std::vector<Commands> many_cycles();
+std::vector<Commands> stop_missing_after_a_cut();
+std::vector<Commands> data_after_many_id_cycles();
 std::vector<Commands> all_codings();
 std::vector<Commands> edges_at_both_limits();
 std::vector<Commands> each_cut();

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <utility>
 
 #include "conformance/interbus/slave_seeded_faults.hpp"
 
@@ -168,6 +169,20 @@ class SecondMissingStopTakesTheErrorBack : public Slave {
   void on_cycle_end(kernel::Time) override { missing_ = 0; }
   bool is_taken_back() const { return missing_ > 0 && missing_ % 2 == 0; }
   mutable unsigned missing_ = 0;
+};
+
+// What begins after a cycle that was broken off has no errors yet.
+class ForgetsTheMissingStopOfABegin : public Slave {
+  using Slave::Slave;
+  void on_cycle_rejected(kernel::Time when, bool own_error) override {
+    is_broken_off_ = true;
+    Slave::on_cycle_rejected(when, own_error);
+  }
+  void on_cycle_end(kernel::Time) override { is_broken_off_ = false; }
+  bool is_telegram_valid(const line::Telegram& telegram) const override {
+    return std::exchange(is_broken_off_, false) || Slave::is_telegram_valid(telegram);
+  }
+  mutable bool is_broken_off_ = false;
 };
 
 // Looks at the high octet of the status word for the marks of others.

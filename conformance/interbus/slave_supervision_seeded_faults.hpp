@@ -189,6 +189,18 @@ class CountsErrorsIn8Bits : public Slave {
   std::uint8_t errors_ = 0;
 };
 
+class CountsIdCyclesIn8Bits : public Slave {
+  using Slave::Slave;
+  void on_id_read(std::uint16_t messages_read) override {
+    ++id_cycles_;
+    Slave::on_id_read(messages_read);
+  }
+  bool may_drive_outputs(Mode mode) const override {
+    return id_cycles_ != 0 && Slave::may_drive_outputs(mode);
+  }
+  std::uint8_t id_cycles_ = 0;
+};
+
 class TellsErrorsOfOthers : public Slave {
   using Slave::Slave;
   void on_cycle_rejected(kernel::Time when, bool) override { Slave::on_cycle_rejected(when, true); }
