@@ -22,7 +22,7 @@ constexpr std::string_view kFolderOfCheck = "/check/";
 constexpr std::string_view kOfImplementation = "implementation_";  // reasons begin so: it crashed, it hangs
 constexpr std::size_t kFewerIfSanitized = 16;
 constexpr std::size_t kFewestSequences = 3;
-constexpr std::size_t kLeastShrinkingRuns = 60;  // of a sequence so long that its commands allow few
+constexpr std::size_t kLeastShrinkingRuns = 20;  // of a sequence so long that its commands allow few
 constexpr std::uint64_t kFingerprintFactor = 0x100'0000'01B3;  // of FNV-1a
 
 const DerivedRow& row_of(DerivedKind kind) {

@@ -195,4 +195,14 @@ Sequence SequenceSource::smaller(std::uint64_t n, const SequenceFails& still_fai
   return alone([&] { return best.value(); });
 }
 
+std::vector<Sequence> drawn_commands(const SequenceVocabulary& vocabulary, std::uint64_t seed,
+                                     std::uint64_t count) {
+  constexpr std::uint64_t kFirst = 40;  // those before are short
+  const SequenceSource source(vocabulary, seed);
+  std::vector<Sequence> sequences;
+  for (std::uint64_t n = 0; n < count; ++n)
+    sequences.push_back({.commands = source.draw(kFirst + n).commands});
+  return sequences;
+}
+
 }  // namespace fieldproof::conformance

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "conformance/sequence.hpp"
 
@@ -31,5 +32,9 @@ class SequenceSource {
   const SequenceVocabulary& vocabulary_;
   std::uint64_t seed_;
 };
+
+// So many, long ones among them, without their settings.
+std::vector<Sequence> drawn_commands(const SequenceVocabulary& vocabulary, std::uint64_t seed,
+                                     std::uint64_t count);
 
 }  // namespace fieldproof::conformance

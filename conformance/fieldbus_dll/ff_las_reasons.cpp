@@ -7,7 +7,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-constexpr std::array kReasonsOfFfLas{
+constexpr auto kReasonsOfFfLas = link_reasons::with_those_of_the_line(std::array{
     ReasonRule{
         "line_left_silent",
         "The scheduler's link is never silent for V(ST) x 16: when nothing else has time it sends IDLE "
@@ -181,13 +181,7 @@ constexpr std::array kReasonsOfFfLas{
                "ordered."},
     ReasonRule{"dlpdu_wrong",
                "A DT1 goes from the link master's node: from selector 01 to the address that its user "
-               "submitted, or from selector 00, its entity."},
-    ReasonRule{"frame_malformed", link_reasons::kFrame},
-    ReasonRule{"check_wrong", link_reasons::kCheck},
-    ReasonRule{"gap_too_short", link_reasons::kGap},
-    ReasonRule{"transmissions_overlap", link_reasons::kOverlap},
-    ReasonRule{"driver_held", link_reasons::kDriver},
-    ReasonRule{"station_babbles", link_reasons::kBabble}};
+               "submitted, or from selector 00, its entity."}});
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-constexpr std::array kReasonsOfFfDevice{
+constexpr auto kReasonsOfFfDevice = link_reasons::with_those_of_the_line(std::array{
     ReasonRule{
         "answers_too_early",
         "A device begins a DLPDU only after V(MID), `inter_pdu_delay_octets`, of silence, counted from "
@@ -87,13 +87,7 @@ constexpr std::array kReasonsOfFfDevice{
     ReasonRule{
         "told_otherwise",
         "Whatever the user is given was sent to it: each DT1 and each published DT3 once, in the order "
-        "in which it came, with the addresses, priority or number of writes, and octets as on the line."},
-    ReasonRule{"frame_malformed", link_reasons::kFrame},
-    ReasonRule{"check_wrong", link_reasons::kCheck},
-    ReasonRule{"gap_too_short", link_reasons::kGap},
-    ReasonRule{"transmissions_overlap", link_reasons::kOverlap},
-    ReasonRule{"driver_held", link_reasons::kDriver},
-    ReasonRule{"station_babbles", link_reasons::kBabble}};
+        "in which it came, with the addresses, priority or number of writes, and octets as on the line."}});
 
 }  // namespace
 

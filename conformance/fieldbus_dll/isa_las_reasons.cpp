@@ -7,7 +7,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-constexpr std::array kReasonsOfIsaLas{
+constexpr auto kReasonsOfIsaLas = link_reasons::with_those_of_the_line(std::array{
     ReasonRule{
         "line_left_silent",
         "On a free link a scheduler begins within V(ST) an ordered TL, the item that is due or data of "
@@ -60,7 +60,7 @@ constexpr std::array kReasonsOfIsaLas{
         "own_data_over_due",
         "Data of its user ends when the next item is due at the latest, with V(MID) and an EE after it, "
         "a CD also with V(RR) and the longest DT of its priority; what does not fit waits, and so does "
-        "all behind it."},
+        "all that comes after it."},
     ReasonRule{"transfer_unasked",
                "A TL is sent once for `03 node`, the latest of them; orders taken in standby, and those open "
                "when it leaves the link or loses its supply, lead to none."},
@@ -102,13 +102,7 @@ constexpr std::array kReasonsOfIsaLas{
     ReasonRule{"says_without_supply",
                "A link master sends nothing without supply, and forgets what was submitted and ordered."},
     ReasonRule{"preamble_wrong", link_reasons::kPreamble},
-    ReasonRule{"source_wrong", "Each DLPDU of a link master has its own address as the source."},
-    ReasonRule{"frame_malformed", link_reasons::kFrame},
-    ReasonRule{"check_wrong", link_reasons::kCheck},
-    ReasonRule{"gap_too_short", link_reasons::kGap},
-    ReasonRule{"transmissions_overlap", link_reasons::kOverlap},
-    ReasonRule{"driver_held", link_reasons::kDriver},
-    ReasonRule{"station_babbles", link_reasons::kBabble}};
+    ReasonRule{"source_wrong", "Each DLPDU of a link master has its own address as the source."}});
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 namespace fieldproof::conformance {
 namespace {
 
-constexpr std::array kReasonsOfIsaDle{
+constexpr auto kReasonsOfIsaDle = link_reasons::with_those_of_the_line(std::array{
     ReasonRule{
         "answers_too_early",
         "A station begins a DLPDU only after V(MID), `inter_pdu_delay_octets`, of silence, counted from "
@@ -88,13 +88,7 @@ constexpr std::array kReasonsOfIsaDle{
         "What the user is given is the DLPDU as it was on the line, with priority, addresses and "
         "octets, in the order in which they came; event 0 names who was compelled, event 1 who sent in "
         "place of the reply."},
-    ReasonRule{"source_wrong", "Each DLPDU of a station has its own address as the source."},
-    ReasonRule{"frame_malformed", link_reasons::kFrame},
-    ReasonRule{"check_wrong", link_reasons::kCheck},
-    ReasonRule{"gap_too_short", link_reasons::kGap},
-    ReasonRule{"transmissions_overlap", link_reasons::kOverlap},
-    ReasonRule{"driver_held", link_reasons::kDriver},
-    ReasonRule{"station_babbles", link_reasons::kBabble}};
+    ReasonRule{"source_wrong", "Each DLPDU of a station has its own address as the source."}});
 
 }  // namespace
 

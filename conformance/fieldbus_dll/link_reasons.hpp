@@ -1,6 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string_view>
+
+#include "conformance/test_case.hpp"
 
 // Rules of the line that stations of both profiles have: what a finding about how a frame stands on it says
 // is required.
@@ -26,5 +31,18 @@ inline constexpr std::string_view kDriver =
 inline constexpr std::string_view kBabble =
     "A station sends each DLPDU as one transmission with V(MID) of silence in front of it, and so never "
     "many within a few octet durations.";
+
+inline constexpr std::array kOfTheLine{
+    ReasonRule{"frame_malformed", kFrame}, ReasonRule{"check_wrong", kCheck},
+    ReasonRule{"gap_too_short", kGap},     ReasonRule{"transmissions_overlap", kOverlap},
+    ReasonRule{"driver_held", kDriver},    ReasonRule{"station_babbles", kBabble}};
+
+template <std::size_t kCount>
+constexpr std::array<ReasonRule, kCount + kOfTheLine.size()> with_those_of_the_line(
+    const std::array<ReasonRule, kCount>& own) {
+  std::array<ReasonRule, kCount + kOfTheLine.size()> all{};
+  std::ranges::copy(kOfTheLine, std::ranges::copy(own, all.begin()).out);
+  return all;
+}
 
 }  // namespace fieldproof::conformance::link_reasons

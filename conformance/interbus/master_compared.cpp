@@ -206,10 +206,7 @@ std::vector<MasterCommands> orders_in_each_state() {
 MasterFamilies drawn_for_a_master() {
   constexpr std::uint64_t kAll = 300;
   const auto all = [](kernel::Random random) {
-    const SequenceSource source(words_of_master(), random.next());
-    std::vector<Sequence> sequences;
-    for (std::uint64_t n = 0; n < kAll; ++n) sequences.push_back({.commands = source.draw(40 + n).commands});
-    return sequences;
+    return drawn_commands(words_of_master(), random.next(), kAll);
   };
   const auto run = [](const Sequence& sequence, MasterBench& bench, CaseJudge& judge) {
     run_master_sequence(sequence, bench, judge);

@@ -96,12 +96,7 @@ void silence_in_a_reset(SlaveBench& bench, CaseJudge& judge) {
 
 Families drawn() {
   constexpr std::uint64_t kAll = 300;
-  const auto all = [](kernel::Random random) {
-    const SequenceSource source(vocabulary(), random.next());
-    std::vector<Sequence> sequences;
-    for (std::uint64_t n = 0; n < kAll; ++n) sequences.push_back({.commands = source.draw(40 + n).commands});
-    return sequences;
-  };
+  const auto all = [](kernel::Random random) { return drawn_commands(vocabulary(), random.next(), kAll); };
   return {{.all = all, .quick = 15, .full = kAll, .run = run_slave_sequence}};
 }
 

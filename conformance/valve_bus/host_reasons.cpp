@@ -81,7 +81,7 @@ constexpr std::array kReasonsOfHost{
     ReasonRule{"gap_in_frame",
                "Inside a frame at most 1.5 characters of silence stand between two characters."},
     ReasonRule{"no_delimiter",
-               "At least 3.5 characters of silence stand in front of each frame, behind whatever was on the "
+               "At least 3.5 characters of silence stand in front of each frame, after whatever was on the "
                "line last, from the nodes or from the host."},
     // How it drives the line.
     ReasonRule{"driver_on_late", "The driver is on at least a bit before the first start bit of a frame."},

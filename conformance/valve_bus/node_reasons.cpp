@@ -39,7 +39,7 @@ constexpr std::array kReasonsOfNode{
                "the command."},
     ReasonRule{"answer_too_late",
                "The first start bit of a response comes at most 2 ms (two characters and two bits where that "
-               "is longer) after the 3.5 characters of silence behind the command."},
+               "is longer) after the 3.5 characters of silence after the command."},
     // What it answers.
     ReasonRule{"answer_length_wrong",
                "A response has three octets, DATA0, DATA1 and BCC; one that has begun goes on to its end, "
