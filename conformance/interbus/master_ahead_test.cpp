@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "conformance/interbus/master_cases.hpp"
-#include "conformance/interbus/master_sequence.hpp"
-#include "conformance/sequence_families.hpp"
+#include "conformance/interbus/whole_cases.hpp"
 #include "protocols/interbus/master.hpp"
 
 namespace fieldproof::conformance {
@@ -48,9 +46,7 @@ TEST(MasterAhead, WhatIsDrivenWithinTheOrderToStartIsNoSilence) {
                               return std::make_unique<SaysAhead>(configuration);
                             },
                         .volume = Volume::quick};
-  const judge::CaseResult result =
-      run_families(*found, {.vocabulary = master_sequence_role().vocabulary, .volume = Volume::quick},
-                   [&](const MasterCase& one) { return run_on_bench(one, setting); });
+  const judge::CaseResult result = run_whole(*found, setting);
   EXPECT_EQ(result.verdict, judge::Verdict::pass) << result.reason;
 }
 

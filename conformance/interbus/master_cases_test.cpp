@@ -1,7 +1,5 @@
 // What is the master suite's own; that references pass and mutants are caught is tested with all suites.
 #include "conformance/interbus/master_cases.hpp"
-#include "conformance/interbus/master_sequence.hpp"
-#include "conformance/sequence_families.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +7,7 @@
 #include <set>
 
 #include "conformance/interbus/master_mutants.hpp"
+#include "conformance/interbus/whole_cases.hpp"
 #include "protocols/interbus/master.hpp"
 
 namespace fieldproof::conformance {
@@ -132,12 +131,8 @@ judge::CaseResult run_master_case(std::string_view id, MasterBench::MakeMaster m
                                   Volume volume = Volume::quick) {
   judge::Pics pics;
   if (!item.empty()) pics.declare(std::string(item), std::string(answer));
-  const MasterCase& one = master_case_of(id);
-  const MasterSetting setting{
-      .make_device = std::move(make_master), .volume = volume, .pics = std::move(pics)};
-  const auto run_one = [&](const MasterCase& asked) { return run_on_bench(asked, setting); };
-  if (!one.families) return run_one(one);
-  return run_families(one, {.vocabulary = master_sequence_role().vocabulary, .volume = volume}, run_one);
+  return run_whole(master_case_of(id),
+                   {.make_device = std::move(make_master), .volume = volume, .pics = std::move(pics)});
 }
 
 TEST(MasterSuite, RightMastersThatDifferFromTheReferencePass) {

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "conformance/interbus/slave_cases.hpp"
+#include "conformance/interbus/whole_cases.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/sanitized.hpp"
+#include "protocols/interbus/slave.hpp"
 
 namespace fieldproof::conformance {
 namespace {
@@ -61,7 +62,7 @@ TEST_P(DeclaredSlaves, PassAsTheyDeclare) {
   for (const SlaveCase& one : slave_cases()) {
     if (few.leaves_out() || is_canary(one.test_case) || has_tag(one.test_case, kStressTag)) continue;
     for (setting.seed = 1; setting.seed <= 2; ++setting.seed) {
-      const judge::CaseResult result = run_slave_case(one, setting);
+      const judge::CaseResult result = run_whole(one, setting);
       const bool is_excluded = result.verdict == judge::Verdict::not_applicable;
       EXPECT_TRUE(is_excluded || result.verdict == judge::Verdict::pass)
           << result.id << " seed " << setting.seed << ": " << result.reason

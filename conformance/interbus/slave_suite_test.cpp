@@ -9,10 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "conformance/interbus/slave_cases.hpp"
 #include "conformance/interbus/slave_mutants.hpp"
-#include "conformance/interbus/slave_sequence.hpp"
-#include "conformance/sequence_families.hpp"
+#include "conformance/interbus/whole_cases.hpp"
 #include "harness/kernel/error.hpp"
 #include "harness/kernel/sanitized.hpp"
 
@@ -41,16 +39,6 @@ SlaveSetting setting_for(const conformance::Setup& setup) {
     };
   }
   return setting;
-}
-
-// Whether it has a procedure or sequences.
-judge::CaseResult run_whole(const SlaveCase& slave_case, const SlaveSetting& setting) {
-  const auto run_one = [&](const SlaveCase& one) { return run_slave_case(one, setting); };
-  if (!slave_case.families) return run_one(slave_case);
-  return run_families(
-      slave_case,
-      {.vocabulary = slave_sequence_role().vocabulary, .seed = setting.seed, .volume = setting.volume},
-      run_one);
 }
 
 std::string what_failed(const judge::CaseResult& result) {
@@ -158,7 +146,7 @@ TEST(SlaveSuite, ACaseOfAVerifiedSourceMayFailForAnUnverifiedOne) {
       setting.make_device = [mutant](const interbus::SlaveConfiguration& configuration) {
         return slave_mutants().make(mutant, configuration);
       };
-      return run_slave_case(slave_case, setting);
+      return run_whole(slave_case, setting);
     };
     EXPECT_EQ(result_with("does_not_mark_status").findings.at(0).reference.standing, judge::Standing::own);
     EXPECT_EQ(result_with("tells_no_check_error").reference.standing, judge::Standing::own);
@@ -184,7 +172,7 @@ TEST(SlaveSuite, StationsOfOneDirectionPassWhatAppliesToThem) {
     std::map<judge::Verdict, int> verdicts;
     for (const SlaveCase& slave_case : cases_without_stress()) {
       if (is_canary(slave_case.test_case)) continue;
-      const judge::CaseResult result = run_slave_case(slave_case, setting_with_id_code(id_code));
+      const judge::CaseResult result = run_whole(slave_case, setting_with_id_code(id_code));
       ++verdicts[result.verdict];
       EXPECT_TRUE(result.verdict == judge::Verdict::pass || result.verdict == judge::Verdict::not_applicable)
           << std::hex << id_code << " " << slave_case.test_case.id << ": " << what_failed(result);
@@ -213,7 +201,7 @@ TEST(SlaveSuite, TheRegisterOfAnOutputStationIsNotJudged) {
 TEST(SlaveSuite, TheCanaryFails) {
   for (const SlaveCase& slave_case : cases_without_stress()) {
     if (!is_canary(slave_case.test_case)) continue;
-    EXPECT_EQ(run_slave_case(slave_case, {}).verdict, judge::Verdict::fail);
+    EXPECT_EQ(run_whole(slave_case, {}).verdict, judge::Verdict::fail);
   }
 }
 
