@@ -48,7 +48,7 @@ constexpr std::array kOptions = {
     Option{"confirm", value, "N", "0", "run", "a failure must come again N times, else it is inconclusive", false, true},
     Option{"shard", value, "I/N", "", "run list", "only each N-th of the selected cases, from the I-th on: one of N runs that are all of them together", false, false, true},
     Option{"call-limit", value, "T", "2s", "run verify check replay shrink emc measure fuzz", "how long an implementation in another process may take for one call", false, true},
-    Option{"case-limit", value, "T", "10min", "run verify check replay shrink emc measure fuzz", "and for all calls of a case", false, true},
+    Option{"case-limit", value, "T", "10min", "run verify check replay shrink emc measure fuzz", "and for all calls of a case; in derived/ and compared/ of each sequence", false, true},
     Option{"reset", value, "COMMAND", "", "run", "a command of the shell that resets the implementation before each case, whose id is $1; cases then run one by one", false, true},
     Option{"fail-fast", flag, "", "", "run", "stop after the first case that fails"},
     Option{"max-time", value, "T", "", "run matrix emc measure check shrink fuzz campaign", "stop after this time: 90s, 15min, 2h"},

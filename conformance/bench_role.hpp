@@ -117,6 +117,7 @@ RoleRow row_of(const CaseRole<Case, Setting, Dissector>& role, Play play) {
                         {.vocabulary = role.sequences->role().vocabulary,
                          .seed = run.setup().seed,
                          .volume = run.setup().volume,
+                         .sequences = run.setup().sequences,
                          .most_shrinking_commands = run.explains() ? kShrinkingCommands : 0},
                         [&](const Case& asked) { return run_case(asked, run, false); });
   };

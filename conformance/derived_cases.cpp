@@ -65,6 +65,7 @@ class DerivedResult {
   bool add(const Sequence& sequence) {
     ++run_;
     judge::CaseResult one = run(sequence);
+    worst_.fingerprint = (worst_.fingerprint ^ one.fingerprint) * kFingerprintFactor;
     if (one.verdict == Verdict::not_applicable) {
       if (++not_applicable_ == 1) why_not_ = std::move(one.reason);
       return true;
@@ -96,10 +97,9 @@ class DerivedResult {
   }
 
  private:
-  // Every run counts, whatever for.
+  // Every run counts, whatever for; but the fingerprint is that of what was judged: explaining it adds nothing.
   judge::CaseResult run(const Sequence& sequence) {
     judge::CaseResult one = part_->run(sequence);
-    worst_.fingerprint = (worst_.fingerprint ^ one.fingerprint) * kFingerprintFactor;
     worst_.virtual_time += one.virtual_time;
     worst_.has_driven = worst_.has_driven || one.has_driven;
     worst_.planned_hits.resize(std::max(worst_.planned_hits.size(), one.planned_hits.size()));

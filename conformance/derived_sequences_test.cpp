@@ -303,6 +303,24 @@ TEST_F(DerivedVerdict, OfAVerdictThatIsNotExplainedNothingMoreIsRun) {
   EXPECT_EQ(result.reason, "valves_wrong");
 }
 
+// Who confirms a failure does not explain it again, and holds the fingerprints against each other.
+TEST_F(DerivedVerdict, ExplainingAddsNothingToItsFingerprint) {
+  const auto fingerprint_with = [&](std::size_t most_shrinking_commands) {
+    const auto run_one = [this](const Sequence& sequence) {
+      judge::CaseResult failed = one(judge::Verdict::fail, "valves_wrong");
+      failed.fingerprint = 7 + sequence.commands.size();
+      return failed;
+    };
+    return run_derived_case({.test_case = case_,
+                             .vocabulary = vocabulary_,
+                             .parts = {{derived_, run_one}},
+                             .most_shrinking_commands = most_shrinking_commands})
+        .fingerprint;
+  };
+  EXPECT_NE(fingerprint_with(0), 0U);
+  EXPECT_EQ(fingerprint_with(kShrinkingCommands), fingerprint_with(0));
+}
+
 TEST_F(DerivedVerdict, OfOneThatHangsItDoesNotAskAgain) {
   std::size_t runs = 0;
   run([&](const Sequence&) {

@@ -140,6 +140,7 @@ void confirm(CaseRun& done, const RunOptions& manner) {
   if (!is_failure(first.verdict) || first.reason == kResetFailed) return;
   Setup unrecorded = done.setup;
   unrecorded.record = false;
+  unrecorded.explains = false;
   for (unsigned repetition = 1; repetition <= manner.confirmations; ++repetition) {
     const judge::CaseResult again = guarded_run(done.entry, unrecorded, manner).result;
     if (again.verdict == Verdict::none) return give_up(done);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "conformance/bench_case.hpp"
@@ -15,6 +17,7 @@ struct FamiliesRun {
   const SequenceVocabulary& vocabulary;
   std::uint64_t seed = 1;
   Volume volume = Volume::full;
+  std::optional<std::size_t> sequences{};  // of all families together; nothing: as many as the volume says
   std::size_t most_shrinking_commands = 0;
 };
 
@@ -27,7 +30,8 @@ judge::CaseResult run_families(const Case& one, const FamiliesRun& given, const 
                  .parts = {},
                  .most_shrinking_commands = given.most_shrinking_commands};
   for (const auto& family : *one.families) {
-    const std::size_t most = given.volume == Volume::quick ? family.quick : family.full;
+    std::size_t most = given.volume == Volume::quick ? family.quick : family.full;
+    if (given.sequences) most = std::min(most, std::max<std::size_t>(*given.sequences / one.families->size(), 1));
     const auto run_one = [&one, &family, &run_case](const Sequence& sequence) {
       FIELDPROOF_CHECK(sequence.settings.empty(), "sequences of a family have no settings");
       Case asked = one;

@@ -116,7 +116,7 @@ struct Setup {
   std::optional<judge::Pics> pics;
   field::Settings settings{};  // of a sequence
   Volume volume = Volume::full;
-  std::optional<std::size_t> sequences{};  // of each derived case; nothing: as many as the volume says
+  std::optional<std::size_t> sequences{};  // of each case that has some; nothing: as many as the volume says
   iut::PeerLimits limits{};                // of implementations in other processes
   bool explains = true;  // of sequences that fail: the smallest, and what decides; false: the verdict only
   bool record = false;   // keep the trace and what the implementations did (bounded) in the outcome

@@ -19,6 +19,7 @@ constexpr std::array<std::string_view, 7> kCallNames = {"begin",    "power", "ch
                                                         "activity", "time",  "end"};
 // Of an act or a call without what it carries.
 constexpr std::size_t kFixedOctets = 60;
+constexpr std::size_t kOctetsOfADevice = 250;
 
 std::int64_t ticks(kernel::Time time) {
   return time.time_since_epoch().count();
@@ -246,6 +247,7 @@ bool DeviceRecording::has_room(std::size_t octets) {
 }
 
 std::size_t DeviceRecording::add(RecordedDevice device) {
+  if (!has_room(kOctetsOfADevice)) return devices_.size();
   devices_.push_back(std::move(device));
   return devices_.size() - 1;
 }
@@ -263,7 +265,7 @@ void DeviceRecording::end_call(std::size_t device, kernel::Time next) {
 }
 
 void DeviceRecording::set_takes_case(std::size_t device, bool takes_case) {
-  devices_[device].takes_case = takes_case;
+  if (!is_truncated_) devices_[device].takes_case = takes_case;
 }
 
 std::string DeviceRecording::text() const {
@@ -279,7 +281,7 @@ DeviceRecording DeviceRecording::load(const std::filesystem::path& path) {
     DeviceRecording recording;
     recording.name_ = name;
     o.required("version").as_integer(kVersion, kVersion);
-    for (const config::Value& device : o.required("devices").as_array(0, 4096))
+    for (const config::Value& device : o.required("devices").as_array())
       recording.add(read_device(device));
     return recording;
   });

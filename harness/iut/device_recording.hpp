@@ -84,7 +84,7 @@ class DeviceRecording {
  public:
   static constexpr std::size_t kMostOctets = 32U << 20U;  // of the text; half of what `load` takes
 
-  // The number of the device.
+  // The number of the device; none of those kept once it is truncated.
   std::size_t add(RecordedDevice device);
   // The last call of a device; later acts belong to it.
   void begin_call(std::size_t device, CallKind kind, kernel::Time at);

@@ -223,5 +223,20 @@ TEST(RecordedDevice, RecordingThatGrowsTooLongSaysSo) {
   EXPECT_LE(recording.text().size(), 2 * DeviceRecording::kMostOctets);
 }
 
+// A case of many sequences makes one device for each of them.
+TEST(RecordedDevice, ThousandsInOneRecordingAreLoadedAgain) {
+  DeviceRecording recording;
+  for (int n = 0; n < 20'000; ++n) recording.add({});
+  EXPECT_FALSE(recording.is_truncated());
+  EXPECT_EQ(StoredRecording(recording).load().devices().size(), 20'000U);
+}
+
+TEST(RecordedDevice, MoreOfThemThanARecordingHoldsAreSaid) {
+  DeviceRecording recording;
+  for (std::size_t n = 0; n < DeviceRecording::kMostOctets / 200; ++n) recording.add({});
+  EXPECT_TRUE(recording.is_truncated());
+  EXPECT_LE(recording.text().size(), 2 * DeviceRecording::kMostOctets);
+}
+
 }  // namespace
 }  // namespace fieldproof::iut
