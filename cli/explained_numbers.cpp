@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "conformance/derived_cases.hpp"
 #include "harness/config/nearest.hpp"
 #include "harness/field/written_table.hpp"
 #include "harness/kernel/error.hpp"
@@ -47,12 +48,37 @@ std::string explained_row(const Tables& tables, std::string_view name) {
   return all;
 }
 
+constexpr std::string_view kAboutSequences =
+    "  A run takes others of them with each seed, whose number differs a little, and fills up with "
+    "sequences\n"
+    "  about two things at once. How many transitions of states there are is asked of the reference: the\n"
+    "  result of that case says it.\n";
+
+// Nothing where this is no role of which cases are derived.
+std::string sequences_of(const conformance::Catalogue& catalogue, std::string_view role) {
+  std::string text;
+  for (const auto& suite : catalogue.suites()) {
+    for (const conformance::RoleRow& row : suite->role_rows()) {
+      if (fmt::format("{}/{}", suite->protocol(), row.name) != role) continue;
+      for (const auto* const sequences : {&row.sequences, &row.more_sequences}) {
+        if (!*sequences) continue;
+        for (const conformance::DerivedExtent& one : conformance::derived_extents((*sequences)->role))
+          text += fmt::format("  {:<68} {:>9} {:>7} {:>7}\n", one.id, one.there_are, one.quick, one.full);
+      }
+    }
+  }
+  if (text.empty()) return text;
+  return fmt::format("\n{:<70} {:>9} {:>7} {:>7}\n{}{}", "sequences about one thing", "there are", "quick",
+                     "full", text, kAboutSequences);
+}
+
 }  // namespace
 
 std::optional<std::string> explained_numbers(const conformance::Catalogue& catalogue, std::string_view word) {
   const Tables tables = tables_of(catalogue);
   for (const auto& [place, table] : tables) {
-    if (place == word) return fmt::format("{}\n\n{}", place, field::columns_of(*table));
+    if (place == word)
+      return fmt::format("{}\n\n{}{}", place, field::columns_of(*table), sequences_of(catalogue, place));
   }
   if (word.find('/') != std::string_view::npos) return std::nullopt;
   std::string text = explained_row(tables, word);

@@ -32,6 +32,10 @@ TEST_F(SchemaVerb, NamesTheNearestOfAWrongName) {
 
 TEST_F(SchemaVerb, ExplainKnowsRolesAndNumbers) {
   EXPECT_HOLDS(call({"explain", "interbus/master"}).out, "cycle_time");
+  // Of a scheduler in standby, too.
+  for (const char* of : {"derived", "standby/derived"})
+    EXPECT_HOLDS(call({"explain", "fieldbus_dll/ff_las"}).out,
+                 fmt::format("fieldbus_dll/ff_las/{}/each_unit_spoilt", of));
   const Called called = call({"explain", "loss_limit"});
   EXPECT_EQ(called.exit_code, 0) << called.err;
   for (const char* part : {"0 s to 3600.000 s", "own, unverified", "valve_bus/node, "})

@@ -97,7 +97,8 @@ class DerivedResult {
   }
 
  private:
-  // Every run counts, whatever for; but the fingerprint is that of what was judged: explaining it adds nothing.
+  // Every run counts, whatever for; but the fingerprint is that of what was judged: explaining it adds
+  // nothing.
   judge::CaseResult run(const Sequence& sequence) {
     judge::CaseResult one = part_->run(sequence);
     worst_.virtual_time += one.virtual_time;
@@ -197,6 +198,21 @@ std::vector<TestCase> derived_cases(const SequenceRole& role) {
     if (has_derived(row.kind, role.vocabulary)) all.push_back(derived_case(role, row));
   // What catches nothing that it declares proves nothing.
   std::erase_if(all, [](const TestCase& one) { return one.catches.empty(); });
+  return all;
+}
+
+std::vector<DerivedExtent> derived_extents(const SequenceRole& role) {
+  std::vector<DerivedExtent> all;
+  for (const TestCase& one : derived_cases(role)) {
+    const DerivedKind kind = *derived_kind(one);
+    if (kind == DerivedKind::walks || kind == DerivedKind::drawn) continue;
+    const std::size_t there_are =
+        derived_sequences(kind, role.vocabulary, 1, kernel::Random(1), kMostRepetitions).singles;
+    const auto taken = [&](Volume volume) {
+      return std::min(derived_count(kind, volume, role.cost), there_are);
+    };
+    all.push_back({kind, one.id, there_are, taken(Volume::quick), taken(Volume::full)});
+  }
   return all;
 }
 

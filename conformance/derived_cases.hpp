@@ -25,6 +25,17 @@ std::vector<TestCase> derived_cases(const SequenceRole& role);
 // Nothing: a case of its own.
 std::optional<DerivedKind> derived_kind(const TestCase& test_case);
 
+// How many sequences of a kind are about one thing, and how many of them a run takes; where that is less, it
+// takes others with each seed. Walks are counted when their reference is asked, and what is drawn has no end.
+struct DerivedExtent {
+  DerivedKind kind;
+  std::string id;  // of its case
+  std::size_t there_are = 0;
+  std::size_t quick = 0;
+  std::size_t full = 0;
+};
+std::vector<DerivedExtent> derived_extents(const SequenceRole& role);
+
 // Commands that are run to find the smallest sequence that fails as the first one does, and as many to find
 // what decides that.
 inline constexpr std::size_t kShrinkingCommands = 2'000;

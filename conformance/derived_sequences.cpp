@@ -17,7 +17,8 @@ const std::array<DerivedRow, 8> kDerivedRows{{
      "between other commands; and two numbers at once."},
     {DerivedKind::faults, "each_unit_spoilt",
      "Each unit of each transmission lost, each of its levels inverted, each gap after it, between the same "
-     "transmission unspoilt; and two faults at once."},
+     "transmission unspoilt; and two faults at once.",
+     400, 7'000},
     {DerivedKind::words, "each_three_commands_in_each_order",
      "Each three commands, usual and unusual, one after the other."},
     {DerivedKind::states, "each_command_in_each_state",

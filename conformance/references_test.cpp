@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "conformance/derived_cases.hpp"
 #include "conformance/fieldbus_dll/suite.hpp"
 #include "conformance/interbus/suite.hpp"
 #include "conformance/reference_walks.hpp"
@@ -48,6 +49,21 @@ TEST_P(SequenceRulesTest, EachDeclaredReasonHasOne) {
     if (one.role() != all.role() || one.requirement != all.requirement) continue;
     for (const MustCatch& caught : one.catches)
       EXPECT_NE(one.requirement_of(caught.reason), one.requirement) << one.id << " " << caught.reason;
+  }
+}
+
+// Each three commands are tens of thousands: of them a run takes others with each seed.
+TEST_P(SequenceRulesTest, AtFullVolumeAllThatIsAboutOneThingIsRun) {
+  if (kernel::kIsSanitized) GTEST_SKIP() << "not applicable: a sanitizer takes fewer sequences";
+  const TestedRole tested = tested_role(GetParam());
+  ASSERT_NE(tested.sequences, nullptr);
+  for (const DerivedExtent& one : derived_extents(*tested.sequences)) {
+    EXPECT_GT(one.quick, 0U) << one.id;
+    if (one.kind == DerivedKind::words) {
+      EXPECT_GE(one.full, 5'000U) << one.id;
+    } else {
+      EXPECT_EQ(one.full, one.there_are) << one.id;
+    }
   }
 }
 

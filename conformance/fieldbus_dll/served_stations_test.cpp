@@ -99,8 +99,8 @@ class ServedLinkRoles : public testing::TestWithParam<std::string> {};
 TEST_P(ServedLinkRoles, ReferenceIsJudgedInEveryCaseAsInside) {
   const auto suite = suite_outside(GetParam(), "");
   int judged = 0;
-  for (const TestCase& test_case : suite->cases()) {
-    if (test_case.role() != GetParam()) continue;
+  for (kernel::FewerIfSanitized few(3); const TestCase& test_case : suite->cases()) {
+    if (test_case.role() != GetParam() || few.leaves_out()) continue;
     // Those of a basic station again.
     if (kernel::kIsSanitized && test_case.id.find("/standby/") != std::string::npos) continue;
     ++judged;

@@ -58,7 +58,7 @@ class DeclaredSlaves : public testing::TestWithParam<DeclaredSlave> {};
 
 TEST_P(DeclaredSlaves, PassAsTheyDeclare) {
   SlaveSetting setting = quick_setting(GetParam().pics);
-  kernel::FewerIfSanitized few(3);
+  kernel::FewerIfSanitized few(8);
   for (const SlaveCase& one : slave_cases()) {
     if (few.leaves_out() || is_canary(one.test_case) || has_tag(one.test_case, kStressTag)) continue;
     for (setting.seed = 1; setting.seed <= 2; ++setting.seed) {

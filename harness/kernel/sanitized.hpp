@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 // For tests whose length is a choice: sanitizers make a run some twenty times slower, and what they look for
 // does not hide in the repetitions.
 namespace fieldproof::kernel {
@@ -24,5 +26,13 @@ class FewerIfSanitized {
   unsigned one_of_;
   unsigned next_ = 0;
 };
+
+// The same of a list, for tests with a parameter.
+template <typename All>
+All fewer_if_sanitized(unsigned one_of, All all) {
+  FewerIfSanitized few(one_of);
+  std::erase_if(all, [&](const auto&) { return few.leaves_out(); });
+  return all;
+}
 
 }  // namespace fieldproof::kernel
