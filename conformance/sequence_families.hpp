@@ -31,7 +31,8 @@ judge::CaseResult run_families(const Case& one, const FamiliesRun& given, const 
                  .most_shrinking_commands = given.most_shrinking_commands};
   for (const auto& family : *one.families) {
     std::size_t most = given.volume == Volume::quick ? family.quick : family.full;
-    if (given.sequences) most = std::min(most, std::max<std::size_t>(*given.sequences / one.families->size(), 1));
+    if (given.sequences)
+      most = std::min(most, std::max<std::size_t>(*given.sequences / one.families->size(), 1));
     const auto run_one = [&one, &family, &run_case](const Sequence& sequence) {
       FIELDPROOF_CHECK(sequence.settings.empty(), "sequences of a family have no settings");
       Case asked = one;

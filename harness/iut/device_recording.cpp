@@ -281,8 +281,7 @@ DeviceRecording DeviceRecording::load(const std::filesystem::path& path) {
     DeviceRecording recording;
     recording.name_ = name;
     o.required("version").as_integer(kVersion, kVersion);
-    for (const config::Value& device : o.required("devices").as_array())
-      recording.add(read_device(device));
+    for (const config::Value& device : o.required("devices").as_array()) recording.add(read_device(device));
     return recording;
   });
 }
