@@ -107,7 +107,7 @@ TEST_P(ServedLinkRoles, ReferenceIsJudgedInEveryCaseAsInside) {
     expect_judged_alike(test_case, outcome_of(*suite, test_case, "outside"),
                         outcome_of(suite_inside(), test_case, "ref"));
   }
-  EXPECT_GT(judged, 10);
+  EXPECT_GT(judged, kernel::kIsSanitized ? 5 : 10);
 }
 
 // In the cases that name them.
