@@ -255,6 +255,29 @@ FfLasModel::Found FfLasModel::check_own_turn(const DrivenDlpdu& next) const {
   return LinkObjection{"data_not_sent", "more urgent data of its user: they have time within V(DTHT)"};
 }
 
+bool FfLasModel::is_behind_own_turn(const DrivenDlpdu& next) const {
+  const auto& codes = rules().codes;
+  const bool is_past_last = !last_token_ || (probes_ + idles_ == 0 && configuration_.node > *last_token_);
+  if (!has_las_code(next, codes.pt, kFinalBit | kPriorityBits)) return is_past_last;
+  const bool is_before_next = configuration_.node < next.octet(1);
+  const bool begins = (next.octet(0) & kFinalBit) != 0;
+  return begins ? is_past_last || is_before_next : is_past_last && is_before_next;
+}
+
+void FfLasModel::note_own_turn(const DrivenDlpdu& next) {
+  const auto& codes = rules().codes;
+  const auto& queue = queues_.at(static_cast<std::size_t>(Priority::urgent));
+  has_time_in_turn_ =
+      has_time_in_turn_ && !queue.empty() &&
+      leaves_time(next.begin + frame_time(rules().link, kOctetsAroundData + queue.front().size()), 2);
+  const bool ends_turn = has_las_code(next, codes.pt, kFinalBit | kPriorityBits) ||
+                         has_las_code(next, codes.pn, 0) ||
+                         (has_las_code(next, codes.idle, 0) && !has_to_probe());
+  if (!ends_turn) return;
+  if (has_time_in_turn_ && is_behind_own_turn(next)) is_data_owed_ = true;
+  has_time_in_turn_ = true;
+}
+
 FfLasModel::Found FfLasModel::say(const DrivenDlpdu& dlpdu) {
   const Duration gap = times(rules().link.inter_pdu_delay_octets);
   if (!is_scheduler_) {
@@ -286,6 +309,7 @@ FfLasModel::Found FfLasModel::say(const DrivenDlpdu& dlpdu) {
 
 FfLasModel::Found FfLasModel::say_dlpdu(const DrivenDlpdu& dlpdu) {
   const auto& codes = rules().codes;
+  note_own_turn(dlpdu);
   if (dlpdu.begin > time_told_ + rules().time_distribution_period)
     return LinkObjection{"time_not_told", "a TD once in V(TDP)"};
   if (has_las_code(dlpdu, codes.dt3, kLongOfLas | kFinalBit | kPriorityBits)) return say_own_buffer(dlpdu);

@@ -67,8 +67,9 @@ class FfLasModel {
 
   // ---- what the station says ----
   Found say(const DrivenDlpdu& dlpdu);
-  // What must have been said by now.
+  // What must have been said by now: its own turn passed with time for it.
   Found end() const;
+  bool has_urgent_data() const;
 
   bool is_scheduler() const { return is_scheduler_; }
   // In standby: another scheduler has asked it.
@@ -138,6 +139,10 @@ class FfLasModel {
   kernel::Duration time_of(const DrivenDlpdu& dlpdu) const;
   Found check_order(const DrivenDlpdu& dlpdu) const;
   Found check_own_turn(const DrivenDlpdu& next) const;
+  // Data has time in its own turn if it has in each gap from the token or the probe before it to the one
+  // after.
+  void note_own_turn(const DrivenDlpdu& next);
+  bool is_behind_own_turn(const DrivenDlpdu& next) const;
 
   void leave();
   void take(kernel::Time now);
@@ -222,6 +227,8 @@ class FfLasModel {
   };
   std::optional<OwnTurn> own_turn_;
   kernel::Time turn_since_ = kernel::kStart;  // it may have begun, though nothing of it was said
+  bool has_time_in_turn_ = true;
+  bool is_data_owed_ = false;
 
   // What its supply begins with, whenever that comes.
   std::optional<std::uint8_t> first_revision_;

@@ -119,6 +119,7 @@ FfLasModel::Found FfLasModel::say_of_user(const DrivenDlpdu& dt1, const Octets& 
     if (queue.empty()) continue;
     const Octets next = queue.front();
     queue.pop_front();
+    is_data_owed_ = false;
     if (priority_said(dt1) == priority && data == next) return std::nullopt;
     return LinkObjection{"sends_other_data", fmt::format("the most urgent that waits, {}: {:02X}",
                                                          text_of(priority), fmt::join(next, " "))};
@@ -126,8 +127,12 @@ FfLasModel::Found FfLasModel::say_of_user(const DrivenDlpdu& dt1, const Octets& 
   return LinkObjection{"sends_other_data", "no data: its user has submitted none"};
 }
 
+bool FfLasModel::has_urgent_data() const {
+  return !queues_.at(static_cast<std::size_t>(Priority::urgent)).empty();
+}
+
 FfLasModel::Found FfLasModel::end() const {
-  if (queues_.at(static_cast<std::size_t>(Priority::urgent)).empty()) return std::nullopt;
+  if (!has_urgent_data() || !is_data_owed_) return std::nullopt;
   return LinkObjection{"data_not_sent", "urgent data of its user, in its turn"};
 }
 

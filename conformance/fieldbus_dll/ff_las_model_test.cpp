@@ -230,7 +230,6 @@ TEST_F(FfLasModelTest, TheTimeGoesOnAndIsToldToWhoAsks) {
 TEST_F(FfLasModelTest, ItsUsersDataIsSentTheMostUrgentFirst) {
   ASSERT_TRUE(model_.submit(Priority::normal, {1}) && model_.submit(Priority::urgent, {2}));
   EXPECT_FALSE(model_.submit(Priority::urgent, Octets(65)));
-  EXPECT_TRUE(model_.end().has_value());
   EXPECT_EQ(says({0xD3, 0x22, 0x30, kLas, 0x01, 2}), "");
   EXPECT_FALSE(model_.end().has_value());
   EXPECT_EQ(says({0xD2, 0x22, 0x30, kLas, 0x01, 3}), "sends_other_data");
@@ -253,6 +252,33 @@ TEST_F(FfLasModelTest, ItsOwnTurnIsUsed) {
   ASSERT_TRUE(model_.submit(Priority::urgent, {1}) && model_.submit(Priority::urgent, {2}));
   EXPECT_EQ(says({0xD3, 0x22, 0x30, kLas, 0x01, 1}), "");
   EXPECT_EQ(passes(0x11, kFirstMark), "data_not_sent");
+}
+
+TEST_F(FfLasModelTest, UrgentDataIsOwedOnceItsTurnHasPassed) {
+  circulate(Priority::urgent);
+  ASSERT_TRUE(model_.submit(Priority::urgent, {1}));
+  probe_in_vain(0x13);
+  EXPECT_FALSE(model_.end().has_value());
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::normal), "");
+  EXPECT_TRUE(model_.end().has_value());
+  returned();
+  EXPECT_EQ(passes(0x12, 0, Priority::normal), "");
+  returned();
+  probe_in_vain(0x14);
+  EXPECT_EQ(says({0xD3, 0x22, 0x30, kLas, 0x01, 1}), "");
+  EXPECT_FALSE(model_.end().has_value());
+}
+
+TEST_F(FfLasModelTest, UrgentDataWithoutTimeInItsTurnIsNotOwed) {
+  circulate(Priority::urgent);
+  ASSERT_TRUE(model_.submit(Priority::urgent, Octets(64)));
+  idle_until(kBeforeDue - 70);
+  probe_in_vain(0x13);
+  idle_until(kBeforeDue + 1);
+  EXPECT_EQ(says({0xA2, 0x11, 0x20}), "");
+  returned();
+  EXPECT_EQ(passes(0x11, kFirstMark, Priority::urgent), "");
+  EXPECT_FALSE(model_.end().has_value());
 }
 
 TEST_F(FfLasModelTest, ItsOwnTurnHasThePriorityOfTheCirculation) {

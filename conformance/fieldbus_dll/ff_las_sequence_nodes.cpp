@@ -83,7 +83,9 @@ void FfLasSequenceRun::return_token(const DrivenDlpdu& pt) {
 }
 
 void FfLasSequenceRun::spend(const DrivenDlpdu& pt) {
-  const std::int64_t around = std::int64_t{bench_.link().inter_pdu_delay_octets} + 5 + 2 + 3;
+  // Silence, preamble, two delimiters, five octets of a DT1 and the frame check.
+  const std::int64_t around =
+      std::int64_t{bench_.link().inter_pdu_delay_octets} + bench_.link().preamble_octets + 2 + 5 + 2;
   const auto most = static_cast<std::int64_t>(bench_.link().most_data.at(2));
   std::int64_t left = duration_in(pt);
   bool is_returned = false;

@@ -27,7 +27,7 @@ void FfLasSequenceRun::run(const Sequence& sequence) {
   const kernel::Time end = bench_.now() + 3 * kMacrocycle;
   const auto most = static_cast<std::int64_t>(sequence.commands.size()) + submitted_;
   const kernel::Time last = end + most * kMacrocycle;
-  while (bench_.now() < end || (model_.end() && bench_.now() < last)) answer(next_said());
+  while (bench_.now() < end || (model_.has_urgent_data() && bench_.now() < last)) answer(next_said());
   object(model_.end(), "silence", bench_.now());
   judge_events();
   std::vector<Octets> delivered;
