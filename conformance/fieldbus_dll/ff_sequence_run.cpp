@@ -64,6 +64,13 @@ void FfSequenceRun::execute(const SequenceCommand& command) {
     case FfWord::idle:
       await_response_window();
       return bench_.wait(command.numbers[0] * kMinute);
+    case FfWord::received:
+    case FfWord::in_front:
+      return send_by_line(word, command.numbers);
+    case FfWord::within:
+      return send_within(command.numbers[0]);
+    case FfWord::meanwhile:
+      return ask_meanwhile(command.numbers);
     default:
       break;
   }
@@ -82,6 +89,18 @@ void FfSequenceRun::send_framed_data(const std::vector<std::int64_t>& numbers) {
                   words_.user_data(kToUser));
   for (const Octets& dlpdu : heard) model_.hear(dlpdu, bench_.now());
   if (heard.empty()) model_.hear_noise(bench_.now());
+  settle(numbers.back());
+}
+
+void FfSequenceRun::send_by_line(FfWord word, const std::vector<std::int64_t>& numbers) {
+  constexpr std::int64_t kLong = 200;
+  const Octets octets = words_.user_data(kToUser, word == FfWord::received ? kLong : FfWords::kUsualSize);
+  if (word == FfWord::received) {
+    send_received(bench_, octets, numbers[0]);
+  } else {
+    send_in_front(bench_, octets, numbers[0], numbers[1]);
+  }
+  model_.hear(octets, bench_.now());
   settle(numbers.back());
 }
 
@@ -161,9 +180,12 @@ void FfSequenceRun::submit(const std::vector<std::int64_t>& numbers) {
 }
 
 void FfSequenceRun::ask_for_nothing(const std::vector<std::int64_t>& numbers) {
+  constexpr std::int64_t kLessThanAnAddress = 3;
   if (!model_.has_supply()) return;
   Octets request{static_cast<std::uint8_t>(numbers[0])};
-  request.resize(1 + static_cast<std::size_t>(numbers[1]), 0x02);
+  const bool is_cut = numbers[0] != 0 && numbers[0] < kOrderOfAMaster;
+  request.resize(1 + static_cast<std::size_t>(is_cut ? std::min(numbers[1], kLessThanAnAddress) : numbers[1]),
+                 0x02);
   const bool is_order = numbers[0] == kOrderOfAMaster;
   const bool is_taken = is_order ? bench_.order_transfer(FfBench::kPeer) : bench_.ask_user_request(request);
   judge_.expect(!is_taken, "unknown_request_taken", "a request that a device does not know is refused",
@@ -183,6 +205,33 @@ void FfSequenceRun::submit_beside(const std::vector<std::int64_t>& numbers) {
   }
   await_response_window();
   send(asked(0));
+  await_response_window();
+}
+
+void FfSequenceRun::send_within(std::int64_t size) {
+  await_response_window();
+  send(asked(0));
+  if (bench_.next_begins(bench_.now() + bench_.observation_timeout())) {
+    bench_.wait(bench_.octets(2));
+    const kernel::Time end = bench_.send(words_.user_data(kToUser, size));
+    const DrivenDlpdu own = *bench_.next();
+    judge_one(own);
+    model_.hear_noise(std::max(own.end, end));
+  }
+  await_response_window();
+}
+
+void FfSequenceRun::ask_meanwhile(const std::vector<std::int64_t>& numbers) {
+  constexpr std::int64_t kSize = 40;
+  constexpr std::int64_t kToPeer = 0;
+  await_response_window();
+  const Octets octets = words_.user_data(kToAnother, kSize);
+  const kernel::Time end = bench_.send_at(bench_.now(), octets);
+  bench_.wait(bench_.octets(kSize / 4));
+  submit({numbers[0], kToPeer, numbers[1], 1});
+  write({0, numbers[1], 1, 0});
+  bench_.run_until(end);
+  model_.hear(octets, end);
   await_response_window();
 }
 

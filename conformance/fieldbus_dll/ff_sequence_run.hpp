@@ -32,6 +32,8 @@ class FfSequenceRun {
   static constexpr kernel::Duration kMinute = 60 * kernel::kSecond;
   void execute(const SequenceCommand& command);
   void send_framed_data(const std::vector<std::int64_t>& numbers);
+  // A frame that comes in another way.
+  void send_by_line(FfWord word, const std::vector<std::int64_t>& numbers);
   // A link master in standby claims a link on which nobody says anything.
   void keep_active();
   void send(const Octets& octets);
@@ -49,6 +51,9 @@ class FfSequenceRun {
   void ask_for_nothing(const std::vector<std::int64_t>& numbers);
   // What is next was decided before it began to send; what is submitted then comes after it.
   void submit_beside(const std::vector<std::int64_t>& numbers);
+  // Others begin within what it sends.
+  void send_within(std::int64_t size);
+  void ask_meanwhile(const std::vector<std::int64_t>& numbers);
   void write(const std::vector<std::int64_t>& numbers);
   void judge_taken(bool is_taken, bool is_right, const Octets& data);
   void judge_said();

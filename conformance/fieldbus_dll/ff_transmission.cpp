@@ -13,9 +13,7 @@ using fieldbus_dll::FfConfiguration;
 using fieldbus_dll::Priority;
 
 constexpr FfAddress kPublisherOnALink = 0x1000'2230;
-constexpr std::size_t kMostInFront = 16;
 constexpr std::size_t kLongestData = 256;
-constexpr unsigned kKindsInFront = 4;
 constexpr std::size_t kLongerThanItsFrame = 60;
 
 void with_last_node(FfConfiguration& configuration) {
@@ -30,22 +28,9 @@ line::Levels probe_frame(const FfScene& scene) {
   return frame_of_link(scene.bench, Octets{scene.bench.rules().codes.pn, scene.bench.node()});
 }
 
-// Half bits that are no preamble: one level, alternating from the other one on, or two and two; or a frame
-// that one level for long cuts off.
 line::Levels in_front(FfScene& scene) {
-  const std::size_t count = 1 + scene.turn % kMostInFront;
-  const std::size_t kind = scene.turn / kMostInFront % kKindsInFront;
-  const line::Levels frame = probe_frame(scene);
-  line::Levels levels;
-  if (kind == 3) {
-    const std::size_t cut = frame.size() / 2 - frame.size() / 2 % 2;
-    for (std::size_t n = 0; n < cut; ++n) levels.append_fill(frame[n], 1);
-    levels.append_fill(!levels[cut - 1], 2 + count);
-  }
-  for (std::size_t n = 0; n < count && kind < 3; ++n)
-    levels.append_fill(kind == 0 || (kind == 1 ? n % 2 == 1 : n / 2 % 2 == 0), 1);
-  levels.append(frame);
-  return levels;
+  return in_front_of(probe_frame(scene), scene.turn / kMostInFront % kKindsInFront,
+                     1 + scene.turn % kMostInFront);
 }
 
 // As long as a DT1 may be.

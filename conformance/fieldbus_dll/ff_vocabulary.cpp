@@ -31,7 +31,7 @@ constexpr std::array<std::int64_t, 4> kFfAsked{0, 0, 1, 2};
 constexpr std::array<std::int64_t, 8> kFfEnding{0, 0, 0, 1, 2, 3, 8, 9};
 constexpr std::array<std::int64_t, 8> kFfBeside{-2, -1, -1, 1, 1, 2, -32, 32};
 constexpr std::array<std::int64_t, 4> kFfMany{1, 2, 40, 260};
-constexpr std::array<std::int64_t, 4> kFfRequests{kOrderOfAMaster, 4, 7, 255};
+constexpr std::array<std::int64_t, 6> kFfRequests{kOrderOfAMaster, 4, 7, 255, 1, 2};
 constexpr std::array<std::int64_t, 2> kFfMinutes{1, 72};
 // Each of them so that there is time left for the others as they are.
 constexpr std::array kBoundsOfFfDevice{SettingBound{"inter_pdu_delay_octets", {1, 24}}};
@@ -151,13 +151,27 @@ std::vector<SequenceWord> ff_device_words() {
        .numbers = {{"times", 1, 300, 1, kFfMany, true}},
        .weight = 2},
       {.word = "ask",
-       .meaning = "the user asks for what there is not, 3: for what a link master does, and more octets",
-       .numbers = {{"request", kOrderOfAMaster, 255, 7, kFfRequests}, {"more", 0, 6, 1}},
+       .meaning = "the user asks for what there is not, 3: for what a link master does, with so many octets "
+                  "more; 1 and 2: to submit and to write, with 3 octets more at most, which is no address",
+       .numbers = {{"request", 0, 255, 7, kFfRequests}, {"more", 0, 6, 1}},
        .weight = 2},
       {.word = "beside",
        .meaning = "a PT for the device; beside what it sends first the user submits data; then another PT",
        .numbers = {{"priority", 1, 3, 2}, {"size", 0, 64, 8, kFfSizes}},
        .weight = 4},
+      link_received(),
+      link_in_front(),
+      {.word = "within",
+       .meaning =
+           "a PT for the device; when two octets of what it sends are on the line, a DT1 of another for "
+           "its user begins, which nobody receives who sends",
+       .numbers = {{"size", 0, 260, 60, kFfSizes}},
+       .weight = 3,
+       .is_no_frame = true},
+      {.word = "meanwhile",
+       .meaning = "within a DT1 of another to another the user submits data and writes a buffer",
+       .numbers = {{"priority", 1, 3, 2}, {"size", 0, 64, 8, kFfSizes}},
+       .weight = 3},
       {.word = "idle",
        .meaning = "so many minutes of silence",
        .numbers = {{"minutes", 1, 80, 72, kFfMinutes}},
@@ -166,7 +180,7 @@ std::vector<SequenceWord> ff_device_words() {
 
 // First octets that no DLPDU has, for some of them; and nodes of which no other here is one.
 std::vector<OtherCodes> ff_other_codes() {
-  return {{"code_cd", {0xC0}}, {"code_pt", {0x40}}, {"code_td", {0x19}}, {"node", {0x7F, 0x80, 0xF7}}};
+  return {{"code_cd", {0xC0}}, {"code_pt", {0x40}}, {"code_td", {0x19}}, {"node", {0x7F, 0x80, 0xF7, 0xFF}}};
 }
 
 }  // namespace

@@ -32,12 +32,17 @@ enum class FfWord : std::uint8_t {
   many,
   ask,
   beside,
+  received,
+  in_front,
+  within,
+  meanwhile,
   idle
 };
 
 // Of "first" of data: those of the DT1 before.
 inline constexpr std::int64_t kSameAgain = 4;
-// Of "ask": the request for which there is a call; what is greater there is not.
+// Of "ask": the request for which there is a call; what is greater there is not, and what is less is a
+// request of a device that ends within its address.
 inline constexpr std::int64_t kOrderOfAMaster = 3;
 
 // What a device publishes and has subscribed to besides two buffers each.

@@ -32,10 +32,11 @@ Octets FfWords::octets_of(FfWord word, const std::vector<std::int64_t>& numbers)
   }
 }
 
-Octets FfWords::user_data(std::int64_t to) {
-  constexpr std::int64_t kUrgency = 2;
-  constexpr std::int64_t kSize = 8;
-  return data({to, 0, kUrgency, 0, 0, kSize});
+Octets FfWords::user_data(std::int64_t to, std::int64_t size) {
+  // That of the least urgent may be the longest.
+  const auto priority =
+      size > kUsualSize ? fieldbus_dll::Priority::time_available : fieldbus_dll::Priority::normal;
+  return data({to, 0, static_cast<std::int64_t>(priority), 0, 0, size});
 }
 
 FfAddress FfWords::buffer(std::int64_t number) const {

@@ -26,7 +26,8 @@ class FfWords {
 
   Octets octets_of(FfWord word, const std::vector<std::int64_t>& numbers);
   // Of a peer, to an address of the word "data".
-  Octets user_data(std::int64_t to);
+  static constexpr std::int64_t kUsualSize = 8;
+  Octets user_data(std::int64_t to, std::int64_t size = kUsualSize);
   fieldbus_dll::FfAddress buffer(std::int64_t number) const;
   fieldbus_dll::FfAddress destination(std::int64_t number) const;
 

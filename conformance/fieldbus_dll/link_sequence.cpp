@@ -21,7 +21,8 @@ constexpr int kMostBitsFlipped = 2;
 constexpr std::string_view kFramings =
     "data of 8 octets for its user, with 1 to 7 bits more in front of the end delimiter, 8: after a start "
     "delimiter and two octets, 9: after a frame for another in the same transmission, 10: after a start "
-    "delimiter, two octets and three bits, 11: after other data for its user, 12: in finer levels";
+    "delimiter, two octets and three bits, 11: after other data for its user, 12: in finer levels, 13: after "
+    "two frames for another";
 
 void flip(line::Levels& half_bits, std::size_t first, std::uint32_t what, int& bits_left) {
   if (what < kHalfBitsOfAnOctet) return half_bits.flip(first + what);
@@ -114,7 +115,7 @@ void send_noise(LinkBench& bench, std::int64_t octets) {
 SequenceWord link_framed() {
   return {.word = "framed",
           .meaning = kFramings,
-          .numbers = {{"how", 1, kFinely, kAfterAnother}, link_silence()},
+          .numbers = {{"how", 1, kAfterTwoOthers, kAfterAnother}, link_silence()},
           .weight = 4,
           .is_no_frame = true};
 }
@@ -132,9 +133,13 @@ std::vector<Octets> send_framed(LinkBench& bench, std::int64_t framing, const Oc
   }
   line::Levels half_bits;
   std::vector<Octets> heard{octets};
-  if (framing == kAfterAnother || framing == kTwoOfThem) {
+  if (framing == kAfterAnother || framing == kTwoOfThem || framing == kAfterTwoOthers) {
     half_bits = half_bits_of_frame(with_frame_check(other));
     heard.insert(heard.begin(), other);
+    if (framing == kAfterTwoOthers) {
+      half_bits.append(line::Levels(half_bits), kHalfBitsOfAnOctet, half_bits.size() - kHalfBitsOfAnOctet);
+      heard.insert(heard.begin(), other);
+    }
   } else if (framing >= kAfterAStart) {
     const std::size_t more = framing == kWithinAnOctet ? kCut : 0;
     half_bits.append(half_bits_of_frame(octets), 0, kBegun + 2 * kHalfBitsOfAnOctet + more);

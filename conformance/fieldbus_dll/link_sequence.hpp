@@ -96,10 +96,11 @@ bool send_link_command(LinkBench& bench, const Octets& octets, const SequenceCom
 inline constexpr std::int64_t kAfterAStart = 8;
 inline constexpr std::int64_t kAfterAnother = 9;
 // A start delimiter within an octet of another frame; behind another frame for the station; in levels of an
-// eighth of a half bit.
+// eighth of a half bit; after two frames for another.
 inline constexpr std::int64_t kWithinAnOctet = 10;
 inline constexpr std::int64_t kTwoOfThem = 11;
 inline constexpr std::int64_t kFinely = 12;
+inline constexpr std::int64_t kAfterTwoOthers = 13;
 SequenceWord link_framed();
 // Sends `octets` so, `other` before it where two are sent; gives the DLPDUs that every receiver has to take.
 std::vector<Octets> send_framed(LinkBench& bench, std::int64_t framing, const Octets& other,

@@ -69,6 +69,20 @@ line::Levels begun_within_an_octet(const LinkBench& bench, const Octets& octets,
   return levels;
 }
 
+line::Levels in_front_of(const line::Levels& frame, std::size_t kind, std::size_t half_bits) {
+  constexpr std::size_t kCutFrame = 3;
+  line::Levels levels;
+  if (kind == kCutFrame) {
+    const std::size_t cut = frame.size() / 2 - frame.size() / 2 % 2;
+    levels.append(frame, 0, cut);
+    levels.append_fill(!levels[cut - 1], 2 + half_bits);
+  }
+  for (std::size_t n = 0; n < half_bits && kind < kCutFrame; ++n)
+    levels.append_fill(kind == 0 || (kind == 1 ? n % 2 == 1 : n / 2 % 2 == 0), 1);
+  levels.append(frame, 0, frame.size());
+  return levels;
+}
+
 line::Levels with_tail(const LinkBench& bench, const Octets& octets, std::size_t tail) {
   line::Levels levels = frame_of_link(bench, octets);
   for (std::size_t n = 0; n < tail * kHalfBitsOfOctet / 2; ++n) levels.append(n % 3 == 0 ? 0b10 : 0b01, 2);
@@ -109,6 +123,21 @@ void send_received(LinkBench& bench, const Octets& octets, std::int64_t how) {
                             : how == kClockIsSlow ? kSlow
                                                   : 1'000));
   }
+}
+
+SequenceWord link_in_front() {
+  return {.word = "in_front",
+          .meaning =
+              "data for its user, and in front so many half bits that are no preamble: 0: of one level, 1: "
+              "alternating, 2: two and two, 3: a frame that they cut off",
+          .numbers = {{"kind", 0, kKindsInFront - 1, 0}, {"half_bits", 1, kMostInFront, 1}, link_silence()},
+          .weight = 4,
+          .is_no_frame = true};
+}
+
+void send_in_front(LinkBench& bench, const Octets& octets, std::int64_t kind, std::int64_t half_bits) {
+  bench.send_half_bits(in_front_of(frame_of_link(bench, octets), static_cast<std::size_t>(kind),
+                                   static_cast<std::size_t>(half_bits)));
 }
 
 SequenceWord link_checked() {

@@ -23,6 +23,11 @@ line::Waveform clocked(const LinkBench& bench, const line::Levels& half_bits, st
 line::Levels frame_of_link(const LinkBench& bench, const Octets& octets);
 // The frame, in front of which it ends after an octet and so many bits, by its own start delimiter.
 line::Levels begun_within_an_octet(const LinkBench& bench, const Octets& octets, std::size_t bits);
+// In front of a frame so many half bits that are no preamble: of one level, alternating from the other one
+// on, or two and two; or a frame that so many half bits of one level, and two more, cut off.
+inline constexpr std::size_t kKindsInFront = 4;
+inline constexpr std::size_t kMostInFront = 16;
+line::Levels in_front_of(const line::Levels& frame, std::size_t kind, std::size_t half_bits);
 // So many octets of symbols that are data, and no frame, behind the frame.
 line::Levels with_tail(const LinkBench& bench, const Octets& octets, std::size_t tail);
 // At 4000000 levels/s, with a pulse of one, half-way between an edge and the middle of a half bit.
@@ -38,6 +43,8 @@ inline constexpr std::int64_t kClockIsSlow = 10;
 inline constexpr std::int64_t kEdgesAreOff = 11;
 SequenceWord link_received();
 void send_received(LinkBench& bench, const Octets& octets, std::int64_t how);
+SequenceWord link_in_front();
+void send_in_front(LinkBench& bench, const Octets& octets, std::int64_t kind, std::int64_t half_bits);
 SequenceWord link_checked();
 
 }  // namespace fieldproof::conformance
