@@ -222,7 +222,9 @@ std::optional<LinkObjection> FfModel::say_data(const DrivenDlpdu& dlpdu) {
   const kernel::Duration gap =
       fieldbus_dll::octets(configuration_.rules.link, configuration_.rules.link.inter_pdu_delay_octets);
   const bool may_follow = following != nullptr && fits(following->front(), dlpdu.end + gap - kLinkRounding);
-  const bool must_follow = following != nullptr && fits(following->front(), dlpdu.end + gap + delay());
+  const bool must_follow =
+      following != nullptr &&
+      fits(following->front(), dlpdu.end + gap + delay() + rounding_of_sums(configuration_.rules.link));
   if (is_final) token_.reset();
   if (!configuration_.rules.returns_with_last_data) {
     if (is_final) return LinkObjection{"returned_with_data", "no F: the token is returned by an RT"};
@@ -238,7 +240,8 @@ std::optional<LinkObjection> FfModel::say_data(const DrivenDlpdu& dlpdu) {
 
 std::optional<LinkObjection> FfModel::return_token(const DrivenDlpdu& dlpdu) {
   std::deque<FfRequest>* const next = next_to_send();
-  const bool is_held_back = next != nullptr && fits(next->front(), dlpdu.begin);
+  const bool is_held_back =
+      next != nullptr && fits(next->front(), dlpdu.begin + rounding_of_sums(configuration_.rules.link));
   std::optional<LinkObjection> objection;
   if (is_held_back)
     objection = LinkObjection{"data_held_back", words_of(dt1_of(next->front()), configuration_.rules)};

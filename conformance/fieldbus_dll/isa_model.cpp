@@ -241,7 +241,8 @@ std::optional<LinkObjection> IsaModel::say_request(const DrivenDlpdu& dlpdu) {
 std::optional<LinkObjection> IsaModel::say_end(const DrivenDlpdu& dlpdu) {
   const bool is_done = !token_->ends && token_->is_used;
   auto* const queue = most_urgent(to_send_, token_->least);
-  if (!is_done && queue != nullptr && fits(queue->front(), dlpdu.begin))
+  const Time latest = dlpdu.begin + kLinkRounding + rounding_of_sums(rules_.link);
+  if (!is_done && queue != nullptr && fits(queue->front(), latest))
     return LinkObjection{"data_held_back", "the most urgent that waits: it fits"};
   const std::uint8_t reason = is_done ? 2 : queue == nullptr ? 0 : 1;
   const Octets expected{static_cast<std::uint8_t>(rules_.codes.ee | kFinalOfIsa), token_->from, address_,

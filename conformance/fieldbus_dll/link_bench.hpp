@@ -22,6 +22,12 @@ namespace fieldproof::conformance {
 
 // Positions on the line are rounded to picoseconds, each for itself: limits are held to a nanosecond.
 inline constexpr kernel::Duration kLinkRounding = kernel::kNanosecond;
+// Of what fits exactly: by how much two sums of the same durations may differ. Nothing where an octet lasts
+// whole picoseconds, as with all usual bit rates.
+inline kernel::Duration rounding_of_sums(const fieldbus_dll::LinkRules& rules) {
+  const bool is_whole = fieldbus_dll::octets(rules, 1) * rules.bit_rate == 8 * kernel::kSecond;
+  return is_whole ? kernel::Duration{} : kLinkRounding;
+}
 
 // What schedules count in: an octet duration at 31.25 kbit/s.
 inline constexpr kernel::Duration kOctetAt31250 = 256 * kernel::kMicrosecond;
