@@ -304,8 +304,10 @@ IsaLasAcceptor::Found IsaLasAcceptor::say_request(const DrivenDlpdu& dlpdu, bool
   Octets said = dlpdu.octets;
   const bool is_unit_data = (dlpdu.octet(0) & 0xF0U) == rules().codes.du;
   if (is_unit_data && !said.empty()) said[0] &= static_cast<std::uint8_t>(~kFinalOfData);
-  if (may_show_itself && is_unit_data && said.size() == kHeaderOfData && said[1] == rules().everybody)
-    return std::nullopt;
+  if (may_show_itself && is_unit_data && said.size() == kHeaderOfData && said[1] == rules().everybody) {
+    if (fieldbus_dll::isa_dlpdu_of(dlpdu.octets, rules())) return std::nullopt;
+    return LinkObjection{"sends_other_data", "a DLPDU: a DU for everybody has a priority"};
+  }
   Request* const request = most_urgent(to_send_, Priority::time_available);
   if (request == nullptr) return LinkObjection{"sends_other_data", "nothing: its user has submitted nothing"};
   Octets expected = header_of(request->compels ? rules().codes.cd : rules().codes.du, request->priority,

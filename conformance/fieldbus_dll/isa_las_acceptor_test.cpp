@@ -190,6 +190,8 @@ TEST(IsaLasAcceptor, WhoHandedOverIsSilentUntilItIsHandedBack) {
   IsaLasAcceptor standby = one;
   EXPECT_EQ(las_reason_in(standby.say(las_said_at(60, kEt))), "speaks_unasked");
   one.hear({0x70, 0x10, 0x12, 0, 9}, las_octet_at(300));
+  IsaLasAcceptor nothing = one;
+  EXPECT_EQ(las_reason_in(nothing.say(las_said_at(308, {0x30, 0xFF, 0x10}))), "sends_other_data");
   EXPECT_EQ(las_reason_in(one.say(las_said_at(308, {0x31, 0xFF, 0x10}))), "");
   EXPECT_EQ(las_reason_in(one.say(las_said_at(324, kEt))), "");
 }
